@@ -1,0 +1,105 @@
+//! Domains: what is to be meshed, as plain data exactly as the user gave it.
+//!
+//! A domain is a planar straight-line graph (PSLG) given as closed loops, free segments and
+//! points, plus a rule that says which of its faces are meshed. Nothing here is repaired: a
+//! [`Domain`] may be invalid, and [`validate`](crate::domain::validate) finds every fault at once
+//! and turns a sound one into a [`Plc`](crate::domain::validate::Plc).
+
+pub mod validate;
+
+use crate::point::Point2;
+
+/// What a loop claims to be. Orientation is never a claim: it is normalised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopRole {
+    /// The file makes no claim; nesting decides (even-odd rule).
+    Any,
+    /// Outer boundary of a piece of the domain, in no loop or in a hole (an island).
+    Outer,
+    /// A hole of the loop with this index in [`Domain::loops`].
+    HoleOf(usize),
+}
+
+/// A closed loop of segments; the closing segment from the last vertex to the first is implied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// Indices into [`Domain::points`], without a repeated closing vertex.
+    pub vertices: Vec<u32>,
+    /// Marker of the segment from vertex i to vertex i + 1; same length as `vertices`.
+    pub markers: Vec<i32>,
+    /// What the file claims of the loop.
+    pub role: LoopRole,
+}
+
+/// A segment that belongs to no loop: an interior constraint, or (rule [`Inside::Carve`]) any
+/// segment of a `.poly` file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Indices into [`Domain::points`].
+    pub vertices: [u32; 2],
+    /// The segment's marker.
+    pub marker: i32,
+}
+
+/// Which faces of the planar straight-line graph are meshed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Inside {
+    /// Those an odd number of loops wind around; free segments are interior constraints.
+    EvenOdd,
+    /// Triangle's rule: all but those that can be reached from infinity, or from one of these hole
+    /// points, without crossing a segment.
+    Carve(Vec<Point2>),
+}
+
+/// A seed of a region: all triangles in its face get `marker`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// A point inside the region.
+    pub seed: Point2,
+    /// The region's marker.
+    pub marker: i32,
+    /// Largest wanted triangle area; `None` when the file gives none.
+    pub area_max: Option<f64>,
+}
+
+/// Where an item of a domain came from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line (1-based) of the file.
+    Line(u64),
+    /// A JSON path such as `$.loops[2].vertices[5]`.
+    Path(String),
+    /// Made by the program (a far-field circle), or given through the library.
+    Made,
+}
+
+/// Places of a domain's items; each list is empty (all [`Place::Made`]) or as long as its items.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    /// One per point.
+    pub points: Vec<Place>,
+    /// One per loop.
+    pub loops: Vec<Place>,
+    /// One per free segment.
+    pub segments: Vec<Place>,
+}
+
+/// A planar domain as given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Domain {
+    /// Vertices of loops and segments, and isolated points (used by neither): those must become
+    /// mesh vertices when they lie inside.
+    pub points: Vec<Point2>,
+    /// Marker of each point; empty or as long as `points`.
+    pub point_markers: Vec<i32>,
+    /// Closed loops.
+    pub loops: Vec<Loop>,
+    /// Free segments.
+    pub segments: Vec<Segment>,
+    /// Which faces are meshed.
+    pub inside: Inside,
+    /// Region seeds.
+    pub regions: Vec<Region>,
+    /// Where each item stood in the file.
+    pub places: Places,
+}

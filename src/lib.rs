@@ -1,0 +1,34 @@
+//! trigrade generates graded triangulations and grades triangulations.
+//!
+//! ```text
+//! file -> domain -> background -> size field -> front -> mesh -> file
+//!         PSLG      CDT of the    spacing L     lays     plain
+//!         loops     boundary      at a point    triangles arrays
+//!
+//! file(domain) + file(mesh) -> check -> report      no arrow from the line above but plain data
+//! ```
+//!
+//! The guarantees, each with its strength and its test, are in `SPEC.md`.
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod background;
+pub mod delaunay;
+pub mod front;
+pub mod improve;
+pub mod mesher;
+pub mod predicates;
+pub mod size;
+pub mod triangulation;
+
+pub mod domain;
+pub mod mesh;
+pub mod point;
+
+pub mod check;
+pub mod draw;
+pub mod format;
+
+#[cfg(feature = "cli")]
+pub mod cli;

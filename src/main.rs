@@ -1,0 +1,3 @@
+//! The `trigrade` program.
+
+fn main() {}
