@@ -54,9 +54,52 @@ pub fn incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
     Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d)))
 }
 
-/// [`incircle`] under the symbolic perturbation of the lifted heights: never `Zero` for a
-/// counterclockwise `a`, `b`, `c` and a `d` that is none of them.
+/// [`incircle`] under the symbolic perturbation of the lifted heights: `Zero` only if all four
+/// points are collinear or two of them are equal.
+///
+/// Every point's height x^2 + y^2 gets an infinitesimal of its own added, infinitely larger for the
+/// lexicographically larger point (Edelsbrunner and Muecke 1990, on the height alone).
 #[must_use]
 pub fn incircle_perturbed(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    incircle(a, b, c, d)
+    let sign = incircle(a, b, c, d);
+    if sign == Sign::Zero { tie_break([a, b, c, d]) } else { sign }
+}
+
+/// Sign of the determinant's perturbation: the cofactor of the largest point that has a nonzero one.
+#[cold]
+fn tie_break(points: [Point2; 4]) -> Sign {
+    let mut order = [0, 1, 2, 3];
+    order.sort_by(|&i, &j| points[j].lexicographic(points[i]));
+    if order.windows(2).any(|w| points[w[0]] == points[w[1]]) {
+        return Sign::Zero;
+    }
+    order
+        .into_iter()
+        .map(|i| height_cofactor(points, i))
+        .find(|&sign| sign != Sign::Zero)
+        .unwrap_or(Sign::Zero)
+}
+
+/// Sign of the cofactor of point `i`'s height in the determinant with rows (x, y, height, 1).
+fn height_cofactor([a, b, c, d]: [Point2; 4], i: usize) -> Sign {
+    match i {
+        0 => orient2d(b, c, d),
+        1 => orient2d(a, c, d).reversed(),
+        2 => orient2d(a, b, d),
+        _ => orient2d(a, b, c).reversed(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_corner_of_a_square_is_cut_off() {
+        let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point2::from);
+        assert_eq!(incircle_perturbed(a, b, d, c), Sign::Negative, "(1, 1) is raised most");
+        assert_eq!(incircle_perturbed(a, b, c, d), Sign::Positive);
+        assert_eq!(incircle_perturbed(b, c, d, a), Sign::Negative, "b and d are joined");
+        assert_eq!(incircle_perturbed(a, b, c, a), Sign::Zero, "equal points are one point");
+    }
 }
