@@ -15,6 +15,12 @@
 //!   origin(e0)--e0--origin(e1)
 //! ```
 
+pub mod constrain;
+pub mod locate;
+mod split;
+mod star;
+pub mod verify;
+
 use std::fmt;
 
 /// Index of a vertex in the point array that belongs to the triangulation.
@@ -72,6 +78,7 @@ pub struct Triangulation {
 
 impl VertexId {
     /// As an array index.
+    #[inline]
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
@@ -80,18 +87,21 @@ impl VertexId {
 
 impl TriangleId {
     /// As an array index.
+    #[inline]
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
     /// The triangle's half-edge from corner `corner` (0, 1 or 2) to the next.
+    #[inline]
     #[must_use]
     pub const fn half_edge(self, corner: u32) -> HalfEdgeId {
         HalfEdgeId(4 * self.0 + corner)
     }
 
     /// The triangle's three half-edges.
+    #[inline]
     #[must_use]
     pub const fn half_edges(self) -> [HalfEdgeId; 3] {
         [self.half_edge(0), self.half_edge(1), self.half_edge(2)]
@@ -100,24 +110,28 @@ impl TriangleId {
 
 impl HalfEdgeId {
     /// The triangle on the left.
+    #[inline]
     #[must_use]
     pub const fn triangle(self) -> TriangleId {
         TriangleId(self.0 >> 2)
     }
 
     /// Position in its triangle: 0, 1 or 2.
+    #[inline]
     #[must_use]
     pub const fn corner(self) -> usize {
         (self.0 & 3) as usize
     }
 
     /// The next half-edge counterclockwise around the triangle.
+    #[inline]
     #[must_use]
     pub const fn next(self) -> Self {
         Self(if self.0 & 3 == 2 { self.0 - 2 } else { self.0 + 1 })
     }
 
     /// The previous half-edge around the triangle.
+    #[inline]
     #[must_use]
     pub const fn prev(self) -> Self {
         Self(if self.0 & 3 == 0 { self.0 + 2 } else { self.0 - 1 })
@@ -144,6 +158,7 @@ impl Triangulation {
     }
 
     /// Whether the slot holds a triangle.
+    #[inline]
     #[must_use]
     pub fn is_live(&self, t: TriangleId) -> bool {
         self.slots[t.index()].flags & LIVE != 0
@@ -155,36 +170,42 @@ impl Triangulation {
     }
 
     /// The corners of a triangle, counterclockwise.
+    #[inline]
     #[must_use]
     pub fn corners(&self, t: TriangleId) -> [VertexId; 3] {
         self.slots[t.index()].origin
     }
 
     /// Whether the triangle has the vertex at infinity.
+    #[inline]
     #[must_use]
     pub fn is_ghost(&self, t: TriangleId) -> bool {
         self.corners(t).contains(&GHOST)
     }
 
     /// Where the half-edge starts.
+    #[inline]
     #[must_use]
     pub fn origin(&self, e: HalfEdgeId) -> VertexId {
         self.slots[e.triangle().index()].origin[e.corner()]
     }
 
     /// Where the half-edge ends.
+    #[inline]
     #[must_use]
     pub fn dest(&self, e: HalfEdgeId) -> VertexId {
         self.origin(e.next())
     }
 
     /// The vertex of the half-edge's triangle that is not on it.
+    #[inline]
     #[must_use]
     pub fn apex(&self, e: HalfEdgeId) -> VertexId {
         self.origin(e.prev())
     }
 
     /// What lies across the half-edge.
+    #[inline]
     #[must_use]
     pub fn across(&self, e: HalfEdgeId) -> Across {
         let raw = self.slots[e.triangle().index()].across[e.corner()];
@@ -196,6 +217,7 @@ impl Triangulation {
     }
 
     /// The opposite half-edge, or `None` on the border.
+    #[inline]
     #[must_use]
     pub fn twin(&self, e: HalfEdgeId) -> Option<HalfEdgeId> {
         match self.across(e) {
@@ -205,6 +227,7 @@ impl Triangulation {
     }
 
     /// Whether the edge must not be flipped. The border counts as constrained.
+    #[inline]
     #[must_use]
     pub fn is_constrained(&self, e: HalfEdgeId) -> bool {
         let slot = &self.slots[e.triangle().index()];
@@ -220,6 +243,7 @@ impl Triangulation {
     }
 
     /// Sets or clears the constraint on this side only: for code that builds triangles one by one.
+    #[inline]
     pub fn set_constrained_side(&mut self, e: HalfEdgeId, constrained: bool) {
         let flags = &mut self.slots[e.triangle().index()].flags;
         if constrained {
@@ -230,6 +254,7 @@ impl Triangulation {
     }
 
     /// The caller's 28-bit word on a triangle (region, inside or outside); 0 in a new triangle.
+    #[inline]
     #[must_use]
     pub fn tag(&self, t: TriangleId) -> u32 {
         self.slots[t.index()].flags >> TAG_SHIFT
@@ -243,6 +268,7 @@ impl Triangulation {
     }
 
     /// Scratch word for searches that mark what they have seen (0 in a new triangle).
+    #[inline]
     #[must_use]
     pub fn mark(&self, t: TriangleId) -> u32 {
         self.slots[t.index()].mark
@@ -275,23 +301,27 @@ impl Triangulation {
     }
 
     /// Overwrites the corners of a live triangle in place (links, flags and tag stay).
+    #[inline]
     pub fn set_corners(&mut self, t: TriangleId, corners: [VertexId; 3]) {
         self.slots[t.index()].origin = corners;
     }
 
     /// Makes two half-edges each other's twin.
+    #[inline]
     pub fn link(&mut self, e: HalfEdgeId, f: HalfEdgeId) {
         self.slots[e.triangle().index()].across[e.corner()] = f.0;
         self.slots[f.triangle().index()].across[f.corner()] = e.0;
     }
 
     /// Makes the half-edge a border with the given owner value (below 2^31).
+    #[inline]
     pub fn set_border(&mut self, e: HalfEdgeId, owner: u32) {
         debug_assert!(owner < BORDER_BIT, "an owner value has 31 bits");
         self.slots[e.triangle().index()].across[e.corner()] = BORDER_BIT | owner;
     }
 
     /// Copies what lies across `from` (twin or border) to `to`, and points the twin back at it.
+    #[inline]
     pub fn relink(&mut self, to: HalfEdgeId, across: Across) {
         match across {
             Across::Twin(twin) => self.link(to, twin),
@@ -300,12 +330,14 @@ impl Triangulation {
     }
 
     /// The half-edge out of the same origin, next counterclockwise; `None` past the border.
+    #[inline]
     #[must_use]
     pub fn rotate_ccw(&self, e: HalfEdgeId) -> Option<HalfEdgeId> {
         self.twin(e.prev())
     }
 
     /// The half-edge out of the same origin, next clockwise; `None` past the border.
+    #[inline]
     #[must_use]
     pub fn rotate_cw(&self, e: HalfEdgeId) -> Option<HalfEdgeId> {
         self.twin(e).map(HalfEdgeId::next)
@@ -326,6 +358,7 @@ impl Triangulation {
     /// # Requires
     /// The edge has a twin and is not constrained. Whether the quadrilateral is convex is the
     /// caller's to know. Both triangles keep their tags; constraints of the outer edges move along.
+    #[inline]
     pub fn flip(&mut self, e: HalfEdgeId) -> HalfEdgeId {
         debug_assert!(!self.is_constrained(e), "flipping a constrained edge");
         let f = self.twin(e).expect("only an edge with two sides can flip");
@@ -350,14 +383,17 @@ impl Triangulation {
         e
     }
 
+    #[inline]
     fn raw_constrained(&self, e: HalfEdgeId) -> bool {
         self.slots[e.triangle().index()].flags & (1 << e.corner()) != 0
     }
 
+    #[inline]
     fn set_origin(&mut self, e: HalfEdgeId, v: VertexId) {
         self.slots[e.triangle().index()].origin[e.corner()] = v;
     }
 
+    #[inline]
     fn attach(&mut self, e: HalfEdgeId, (across, constrained): (Across, bool)) {
         self.relink(e, across);
         self.set_constrained_side(e, constrained);

@@ -1,0 +1,6 @@
+//! The triangulation, the Delaunay engines and the background mesh.
+
+mod background;
+mod cdt;
+mod clouds;
+mod naive;
