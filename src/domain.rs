@@ -5,6 +5,7 @@
 //! [`Domain`] may be invalid, and [`validate`](crate::domain::validate) finds every fault at once
 //! and turns a sound one into a [`Plc`](crate::domain::validate::Plc).
 
+pub mod naca;
 pub mod validate;
 
 use crate::point::Point2;

@@ -1,3 +1,7 @@
-//! The `trigrade` program.
+//! The `trigrade` program: everything is in [`trigrade::cli`].
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    trigrade::cli::main()
+}

@@ -1,0 +1,442 @@
+//! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
+//! page, the completions and the tests.
+
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done, and every check holds
+  1  findings: an invalid domain, a mesh that fails its check, a gate missed
+  2  could not run: usage, files, malformed input, a limit
+  130  interrupted; nothing half-written is left
+
+Every complaint names the rule it applies; `trigrade explain ID` prints that rule.";
+
+/// Graded triangulation with exact predicates, and an exact check of anybody's mesh.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "trigrade", version, after_help = EXIT_CODES, max_term_width = 100)]
+#[command(subcommand_required = true, arg_required_else_help = true)]
+pub struct Arguments {
+    /// Flags that every verb takes.
+    #[command(flatten)]
+    pub global: Global,
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// Flags that every verb takes.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Everywhere")]
+pub struct Global {
+    /// Print nothing but errors.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Print the report as JSON on standard output, and nothing else there.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Write a report: KIND is `text` or `json`, FILE may be `-`; may be given several times.
+    #[arg(long, global = true, value_name = "KIND=FILE", value_parser = parse_report)]
+    pub report: Vec<ReportTarget>,
+    /// Worker threads; the answer is the same for any number.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print more: stages, times, where numbers come from.
+    #[arg(long, short, global = true, action = ArgAction::Count)]
+    pub verbose: u8,
+}
+
+/// The verbs.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Verb {
+    /// Mesh a plane domain; the mesh is checked before it is handed out.
+    Mesh(Box<MeshArguments>),
+    /// Check a mesh exactly, anybody's mesh, with or without its domain.
+    Check(CheckArguments),
+    /// Mesh the NACA 0012 airfoil by three methods and leave meshes, pictures and a report.
+    Demo(DemoArguments),
+    /// Print the rule behind an id such as D4 or M3; without an id, list all rules.
+    Explain(ExplainArguments),
+    /// Convert a mesh between formats, bit for bit where the formats allow it.
+    Convert(ConvertArguments),
+    /// Draw a mesh as SVG or PNG.
+    Plot(PlotArguments),
+    /// Print the completion script of a shell.
+    Completions(CompletionsArguments),
+    /// Print the manual page (roff).
+    Man,
+}
+
+/// `trigrade mesh`
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trigrade mesh wing.poly -o wing.msh -o wing.svg
+  trigrade mesh naca.dat --farfield 15,60 -o naca.vtu
+  trigrade mesh - --from poly --form off -o - < wing.poly > wing.off
+  trigrade mesh wing.poly --method afm --dry-run")]
+pub struct MeshArguments {
+    /// The domain: .poly, .json, .geojson or an airfoil .dat; `-` is standard input.
+    #[arg(value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
+    pub domain: PathBuf,
+    /// Where the mesh goes; the extension names the form, `-` is standard output; repeatable.
+    #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
+    #[arg(required_unless_present = "dry_run")]
+    pub outputs: Vec<PathBuf>,
+    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+    /// How the domain is read.
+    #[command(flatten)]
+    pub reading: DomainReading,
+    /// What is built.
+    #[command(flatten)]
+    pub options: MeshOptions,
+    /// Print the predicted number of triangles and stop.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Hand the mesh out without reading it back and checking it.
+    #[arg(long)]
+    pub no_check: bool,
+    /// Print the time of each stage.
+    #[arg(long)]
+    pub timings: bool,
+}
+
+/// How a domain file is read.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Domain")]
+pub struct DomainReading {
+    /// Form of the domain, whatever its extension: poly, json, geojson, dat.
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// Far-field circle around an airfoil: its radius in chords and its number of points.
+    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield)]
+    pub farfield: Option<Farfield>,
+}
+
+/// What the mesher is asked to do.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Meshing")]
+pub struct MeshOptions {
+    /// How triangles are laid.
+    #[arg(long, value_enum, default_value_t = Method::Graded)]
+    pub method: Method,
+    /// Spacing at the boundary nodes.
+    #[arg(long, value_enum, default_value_t = Density::BoundaryEdges)]
+    pub density: Density,
+    /// How spacing spreads from the boundary into the domain.
+    #[arg(long, value_enum, default_value_t = Gradation::Growth)]
+    pub gradation: Gradation,
+    /// Largest slope of the spacing with `--gradation growth`.
+    #[arg(long, value_name = "SLOPE", value_parser = parse_positive)]
+    pub growth: Option<f64>,
+    /// Keep the spacing within [b/K, K b] of the base edge's length b.
+    #[arg(long, value_name = "K", value_parser = parse_clamp)]
+    pub clamp: Option<f64>,
+    /// Spacing for `--gradation uniform`; without it the mean boundary edge.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    pub spacing: Option<f64>,
+    /// Which front edge goes first.
+    #[arg(long, value_enum, default_value_t = Order::Layered)]
+    pub order: Order,
+    /// The angle rules of the front: candidates that are scored, or hard decisions.
+    #[arg(long, value_enum, default_value_t = Rules::Scored)]
+    pub rules: Rules,
+    /// Refuse, before any work, to make more triangles than this.
+    #[arg(long, value_name = "COUNT", default_value_t = 50_000_000)]
+    pub max_triangles: u64,
+    /// Leave out the flips and the smoothing after the front.
+    #[arg(long)]
+    pub no_improve: bool,
+}
+
+/// `--method`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Advancing front with the size field of the background triangulation.
+    Graded,
+    /// Plain advancing front: equilateral on the base edge, no size field.
+    Afm,
+    /// Spacing from the two boundary edges that the base edge's normal meets.
+    Direct,
+    /// The constrained Delaunay triangulation of the boundary alone.
+    DelaunayInitial,
+}
+
+/// `--density`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Density {
+    /// Mean length of all background edges at the node.
+    AllEdges,
+    /// Mean length of the boundary edges at the node.
+    BoundaryEdges,
+}
+
+/// `--gradation`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Gradation {
+    /// Smallest of `h_i` + growth * distance over the boundary nodes i.
+    Growth,
+    /// a L1 + b L2 + c L3 in the background triangle.
+    Mean,
+    /// The same divided by three.
+    Third,
+    /// One spacing everywhere.
+    Uniform,
+}
+
+/// `--order`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Order {
+    /// Nearest to the boundary first.
+    Layered,
+    /// Shortest first.
+    Shortest,
+}
+
+/// `--rules`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Rules {
+    /// Every rule offers a candidate; the best one is taken.
+    Scored,
+    /// The angle decides.
+    Hard,
+}
+
+/// `trigrade check`
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trigrade check wing.msh --domain wing.poly
+  trigrade check wing.off --json
+  trigrade check - --from off < wing.off")]
+pub struct CheckArguments {
+    /// The mesh; `-` is standard input.
+    #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
+    pub mesh: PathBuf,
+    /// Form of the mesh, whatever its extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// The domain that the mesh must cover, its boundary preserved.
+    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
+    pub domain: Option<PathBuf>,
+    /// Form of the domain, whatever its extension.
+    #[arg(long, value_name = "FORM", requires = "domain")]
+    pub domain_from: Option<String>,
+    /// Far-field circle, as it was given to `mesh`.
+    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
+    pub farfield: Option<Farfield>,
+}
+
+/// `trigrade demo`
+#[derive(Clone, Debug, Args)]
+pub struct DemoArguments {
+    /// The folder that everything goes to.
+    #[arg(long, short, value_name = "FOLDER", default_value = "trigrade-demo")]
+    pub output: PathBuf,
+}
+
+/// `trigrade explain`
+#[derive(Clone, Debug, Args)]
+pub struct ExplainArguments {
+    /// An id (M3) or a slug (mesh.positive) of SPEC.md.
+    #[arg(value_name = "ID")]
+    pub id: Option<String>,
+}
+
+/// `trigrade convert`
+#[derive(Clone, Debug, Args)]
+pub struct ConvertArguments {
+    /// The mesh; `-` is standard input.
+    #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
+    pub mesh: PathBuf,
+    /// Form of the mesh, whatever its extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// Where it goes; the extension names the form, `-` is standard output; repeatable.
+    #[arg(long = "output", short, value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+}
+
+/// `trigrade plot`
+#[derive(Clone, Debug, Args)]
+pub struct PlotArguments {
+    /// The mesh; `-` is standard input.
+    #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
+    pub mesh: PathBuf,
+    /// Form of the mesh, whatever its extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// The picture: .svg or .png, `-` is standard output; repeatable.
+    #[arg(long = "output", short, value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Form of the pictures, whatever their extension (needed for `-o -`).
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+    /// Draw only this part of the plane.
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_window, allow_hyphen_values = true)]
+    pub window: Option<Window>,
+    /// Width of the picture in pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 1200)]
+    #[arg(value_parser = clap::value_parser!(u32).range(16..=20_000))]
+    pub width: u32,
+}
+
+/// `trigrade completions`
+#[derive(Clone, Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Radius in chords and number of points of a far-field circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Farfield {
+    /// In chords.
+    pub radius: f64,
+    /// On the circle.
+    pub points: u32,
+}
+
+/// A rectangle of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Lower left corner.
+    pub low: [f64; 2],
+    /// Upper right corner.
+    pub high: [f64; 2],
+}
+
+/// Kinds of reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportKind {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// A report that is wanted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReportTarget {
+    /// What kind.
+    pub kind: ReportKind,
+    /// Where to; `-` is standard output.
+    pub path: PathBuf,
+}
+
+fn parse_report(text: &str) -> Result<ReportTarget, String> {
+    let (kind, path) =
+        text.split_once('=').ok_or("write it as KIND=FILE, e.g. json=report.json")?;
+    let kind = match kind {
+        "text" => ReportKind::Text,
+        "json" => ReportKind::Json,
+        other => {
+            return Err(format!("no report kind is called `{other}`; there are text and json"));
+        }
+    };
+    if path.is_empty() {
+        return Err("the file name is missing after `=`".into());
+    }
+    Ok(ReportTarget { kind, path: path.into() })
+}
+
+fn parse_finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err("the number must be finite".into()),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    let value = parse_finite(text)?;
+    if value > 0.0 { Ok(value) } else { Err("the number must be above 0".into()) }
+}
+
+fn parse_clamp(text: &str) -> Result<f64, String> {
+    let value = parse_finite(text)?;
+    if value >= 1.0 { Ok(value) } else { Err("the factor must be at least 1".into()) }
+}
+
+fn parse_farfield(text: &str) -> Result<Farfield, String> {
+    let (radius, points) = text.split_once(',').ok_or("write it as RADIUS,POINTS, e.g. 15,60")?;
+    let radius = parse_positive(radius)?;
+    // Below three points there is no circle; above a million it is surely a slip.
+    match points.trim().parse::<u32>() {
+        Ok(points @ 3..=1_000_000) => Ok(Farfield { radius, points }),
+        _ => Err("the number of points must be a whole number from 3 to 1000000".into()),
+    }
+}
+
+fn parse_window(text: &str) -> Result<Window, String> {
+    let numbers = text.split(',').map(parse_finite).collect::<Result<Vec<_>, _>>()?;
+    match numbers[..] {
+        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(Window { low: [x0, y0], high: [x1, y1] }),
+        [_, _, _, _] => Err("X0 must be below X1 and Y0 below Y1".into()),
+        _ => Err("write it as X0,Y0,X1,Y1".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    // spec: K1
+    #[test]
+    fn the_definition_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_flag_has_a_help_line() {
+        let command = Arguments::command();
+        for verb in command.get_subcommands() {
+            for argument in verb.get_arguments() {
+                let id = argument.get_id();
+                assert!(argument.get_help().is_some(), "{} {id} has no help", verb.get_name());
+            }
+        }
+    }
+
+    #[test]
+    fn reports_are_kind_and_file() {
+        let target = parse_report("json=a=b.json").expect("only the first `=` separates");
+        assert_eq!(target, ReportTarget { kind: ReportKind::Json, path: "a=b.json".into() });
+        for wrong in ["json", "json=", "yaml=a", "=a"] {
+            assert!(parse_report(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_outside_their_range_are_refused() {
+        for wrong in ["0", "-1", "nan", "inf", "1e999", "", "one"] {
+            assert!(parse_positive(wrong).is_err(), "{wrong}");
+        }
+        assert!(parse_clamp("0.5").is_err());
+        assert_eq!(parse_clamp("1"), Ok(1.0));
+    }
+
+    #[test]
+    fn far_fields() {
+        assert_eq!(parse_farfield("15,60"), Ok(Farfield { radius: 15.0, points: 60 }));
+        for wrong in ["15", "15,2", "0,60", "15,-3", "15,99999999999", "15,60,3"] {
+            assert!(parse_farfield(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn windows() {
+        assert_eq!(parse_window("-1,-1,2,1").map(|w| w.low), Ok([-1.0, -1.0]));
+        for wrong in ["1,1,1,2", "0,0,1", "0,0,1,1,1", "a,0,1,1", "0,3,1,1"] {
+            assert!(parse_window(wrong).is_err(), "{wrong}");
+        }
+    }
+}

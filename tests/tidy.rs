@@ -1,0 +1,254 @@
+//! Rules of the house that no compiler enforces: who may import whom, and what must not leak.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Files under `folder` with one of the extensions, in alphabetical order.
+fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    let wanted = |path: &Path| {
+        path.extension().is_some_and(|e| extensions.iter().any(|wanted| e == *wanted))
+    };
+    paths
+        .into_iter()
+        .flat_map(|path| match path.is_dir() {
+            true if path.ends_with("target") || path.ends_with(".git") => Vec::new(),
+            true => files(&path, extensions),
+            false if wanted(&path) => vec![path],
+            false => Vec::new(),
+        })
+        .collect()
+}
+
+fn name(path: &Path) -> String {
+    path.strip_prefix(root()).expect("below the root").display().to_string()
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// Code lines with their numbers: no comments, nothing from the unit tests at the foot.
+fn code(text: &str) -> Vec<(usize, &str)> {
+    text.lines()
+        .enumerate()
+        .take_while(|(_, line)| line.trim() != "#[cfg(test)]")
+        .map(|(i, line)| (i + 1, line.split("//").next().unwrap_or("")))
+        .collect()
+}
+
+/// Top-level modules of the crate that a line of code names: `crate::a`, `crate::{a, b::c}`.
+fn crate_modules(line: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (at, pattern) in line.match_indices("crate::") {
+        let rest = &line[at + pattern.len()..];
+        let named: Vec<&str> = match rest.strip_prefix('{') {
+            Some(list) => top_level(list),
+            None => vec![rest],
+        };
+        for path in named {
+            let end = path.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(path.len());
+            let module = &path.trim_start()[..end.min(path.trim_start().len())];
+            let module: String =
+                module.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            found.extend((!module.is_empty()).then_some(module));
+        }
+    }
+    found
+}
+
+/// The items of a braced list, split at commas that are in no inner brace.
+fn top_level(list: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut items) = (0, 0, Vec::new());
+    for (i, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => {
+                items.push(&list[start..i]);
+                return items;
+            }
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                items.push(&list[start..i]);
+                start = i + 1;
+            }
+            _ => {}
+        }
+    }
+    items.push(&list[start..]);
+    items.iter().map(|item| item.trim_start()).collect()
+}
+
+/// Fails for each crate module that a file below src names and must not.
+fn forbid_modules(is_file: impl Fn(&str) -> bool, is_allowed: impl Fn(&str) -> bool) {
+    for path in files(&root().join("src"), &["rs"]) {
+        let name = name(&path);
+        if !is_file(&name) {
+            continue;
+        }
+        // Imports may span lines: joined up to the semicolon.
+        let text = read(&path);
+        let joined: String =
+            code(&text).iter().map(|(_, line)| line.trim()).collect::<Vec<_>>().join(" ");
+        for module in joined.split(';').flat_map(crate_modules) {
+            assert!(is_allowed(&module), "{name}: must not use crate::{module}");
+        }
+    }
+}
+
+fn is_of(name: &str, module: &str) -> bool {
+    name == format!("src/{module}.rs") || name.starts_with(&format!("src/{module}/"))
+}
+
+/// Plain data and what both halves of the house may use.
+const PLAIN: [&str; 3] = ["point", "mesh", "domain"];
+
+// spec: K7
+#[test]
+fn check_imports_nothing_it_checks() {
+    forbid_modules(
+        |name| is_of(name, "check"),
+        |module| ["check", "format"].contains(&module) || PLAIN.contains(&module),
+    );
+    for path in files(&root().join("src/check"), &["rs"]) {
+        let text = read(&path);
+        for (line, code) in code(&text) {
+            // Even plain data must not bring the mesher's predicates in through the back door.
+            let leak = ["validate::", "predicates", "triangulation", "robust::"];
+            let bad = leak.iter().find(|word| code.contains(**word));
+            assert!(bad.is_none(), "{}:{line}: check has its own arithmetic", name(&path));
+        }
+    }
+}
+
+#[test]
+fn no_stage_reads_a_later_one() {
+    // In the order data flows; `format` and `draw` are not stages.
+    const STAGES: [&str; 9] = [
+        "predicates",
+        "triangulation",
+        "delaunay",
+        "background",
+        "size",
+        "front",
+        "improve",
+        "mesher",
+        "cli",
+    ];
+    for (i, stage) in STAGES.iter().enumerate() {
+        forbid_modules(
+            |name| is_of(name, stage),
+            |module| !STAGES[i + 1..].contains(&module) && (module != "check" || *stage == "cli"),
+        );
+    }
+    for plain in PLAIN {
+        // The validator of domains stands on the predicates; nothing above it may.
+        forbid_modules(
+            |name| is_of(name, plain),
+            |module| PLAIN.contains(&module) || (plain == "domain" && module == "predicates"),
+        );
+    }
+}
+
+#[test]
+fn the_triangulation_knows_no_coordinates() {
+    for path in files(&root().join("src"), &["rs"]) {
+        if name(&path) != "src/triangulation.rs" {
+            continue;
+        }
+        for (line, code) in code(&read(&path)) {
+            let bad = ["Point2", "f64", "f32"].iter().find(|word| code.contains(**word));
+            assert!(bad.is_none(), "src/triangulation.rs:{line}: topology only");
+        }
+    }
+}
+
+// spec: K6
+#[test]
+fn the_library_has_no_clock_no_randomness_and_no_platform_trigonometry() {
+    const BANNED: [(&str, &str); 9] = [
+        ("Instant::now", "no clock below the command line"),
+        ("SystemTime", "no clock below the command line"),
+        ("thread_rng", "no randomness"),
+        ("HashMap", "hashing order is not deterministic: BTreeMap or an index"),
+        ("HashSet", "hashing order is not deterministic: BTreeSet or an index"),
+        (".sin()", "libm::sin: the same on every platform"),
+        (".cos()", "libm::cos: the same on every platform"),
+        (".acos()", "libm::acos: the same on every platform"),
+        ("static mut", "no global state"),
+    ];
+    for path in files(&root().join("src"), &["rs"]) {
+        let name = name(&path);
+        if is_of(&name, "cli") {
+            continue;
+        }
+        let text = read(&path);
+        for (line, code) in code(&text) {
+            for (word, why) in BANNED {
+                assert!(!code.contains(word), "{name}:{line}: error: {word} is banned: {why}");
+            }
+        }
+    }
+}
+
+#[test]
+fn files_are_read_and_written_in_format_and_cli_only() {
+    for path in files(&root().join("src"), &["rs"]) {
+        let name = name(&path);
+        if ["cli", "format"].iter().any(|module| is_of(&name, module)) || name == "src/main.rs" {
+            continue;
+        }
+        let text = read(&path);
+        for (line, code) in code(&text) {
+            let bad = ["std::fs", "File::", "println!", "eprintln!", "std::env::"];
+            let bad = bad.iter().find(|word| code.contains(**word));
+            assert!(bad.is_none(), "{name}:{line}: input and output live in format and cli");
+        }
+    }
+}
+
+#[test]
+fn there_is_no_unsafe_code() {
+    let lib = read(&root().join("src/lib.rs"));
+    assert!(lib.contains("#![forbid(unsafe_code)]"), "the library forbids it");
+    for path in files(&root().join("src"), &["rs"]) {
+        let text = read(&path);
+        for (line, code) in code(&text) {
+            let words: BTreeSet<&str> = code.split_whitespace().collect();
+            assert!(!words.contains("unsafe"), "{}:{line}", name(&path));
+        }
+    }
+}
+
+#[test]
+fn nothing_of_a_developers_machine_leaks() {
+    let extensions = ["rs", "md", "toml", "json", "poly", "dat", "off", "svg", "txt", "run"];
+    // In pieces, so that this file passes its own test.
+    let banned = [concat!("/ho", "me/"), concat!("/ro", "ot/"), concat!("/Us", "ers/")];
+    let banned_words = [concat!("/wo", "rk/"), concat!("C:\\", "Users")];
+    for path in files(&root(), &extensions) {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        for word in banned.iter().chain(&banned_words) {
+            assert!(!text.contains(word), "{}: names {word}", name(&path));
+        }
+    }
+}
+
+#[test]
+fn the_parser_of_imports_sees_what_it_should() {
+    assert_eq!(crate_modules("use crate::point::Point2"), ["point"]);
+    assert_eq!(
+        crate_modules("use crate::{mesh::{A, B}, front, size::x}"),
+        ["mesh", "front", "size"]
+    );
+    assert_eq!(crate_modules("let x = crate::mesher::mesh(a, crate::size::h)"), ["mesher", "size"]);
+    assert_eq!(crate_modules("use std::crate_like"), [""; 0]);
+    assert_eq!(code("a // b\n#[cfg(test)]\nc"), [(1, "a ")]);
+}
