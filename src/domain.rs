@@ -9,6 +9,7 @@ pub mod naca;
 pub mod validate;
 
 use crate::point::Point2;
+use std::fmt;
 
 /// What a loop claims to be. Orientation is never a claim: it is normalised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +69,8 @@ pub struct Region {
 pub enum Place {
     /// A line (1-based) of the file.
     Line(u64),
+    /// A line (1-based) of the `.node` file beside a `.poly` file.
+    NodeLine(u64),
     /// A JSON path such as `$.loops[2].vertices[5]`.
     Path(String),
     /// Made by the program (a far-field circle), or given through the library.
@@ -83,6 +86,21 @@ pub struct Places {
     pub loops: Vec<Place>,
     /// One per free segment.
     pub segments: Vec<Place>,
+    /// One per hole point of [`Inside::Carve`].
+    pub holes: Vec<Place>,
+    /// One per region.
+    pub regions: Vec<Place>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::NodeLine(line) => write!(f, "line {line} of the .node file"),
+            Self::Path(path) => f.write_str(path),
+            Self::Made => f.write_str("made by the program"),
+        }
+    }
 }
 
 /// A planar domain as given.
@@ -103,4 +121,78 @@ pub struct Domain {
     pub regions: Vec<Region>,
     /// Where each item stood in the file.
     pub places: Places,
+}
+
+/// The smallest rectangle with sides along the axes that holds all points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundingBox {
+    /// Lower left corner.
+    pub min: Point2,
+    /// Upper right corner.
+    pub max: Point2,
+}
+
+impl BoundingBox {
+    /// The box of the finite ones among `points`; `None` when there are none.
+    pub fn of(points: impl IntoIterator<Item = Point2>) -> Option<Self> {
+        points.into_iter().filter(|p| p.is_finite()).fold(None, |bounds, p| {
+            let Self { min, max } = bounds.unwrap_or(Self { min: p, max: p });
+            Some(Self {
+                min: Point2::new(min.x.min(p.x), min.y.min(p.y)),
+                max: Point2::new(max.x.max(p.x), max.y.max(p.y)),
+            })
+        })
+    }
+}
+
+impl Domain {
+    /// A domain with the given points and nothing else, under the even-odd rule.
+    #[must_use]
+    pub fn new(points: Vec<Point2>) -> Self {
+        Self {
+            points,
+            point_markers: Vec::new(),
+            loops: Vec::new(),
+            segments: Vec::new(),
+            inside: Inside::EvenOdd,
+            regions: Vec::new(),
+            places: Places::default(),
+        }
+    }
+
+    /// Box of the points that loops and segments use; of all points when they use none.
+    #[must_use]
+    pub fn bounding_box(&self) -> Option<BoundingBox> {
+        let ends = self.edges().flatten();
+        BoundingBox::of(ends.filter_map(|i| self.points.get(i as usize).copied()))
+            .or_else(|| BoundingBox::of(self.points.iter().copied()))
+    }
+
+    /// Sum of the lengths of all loop edges and free segments, rounded; it ranks, never decides.
+    #[must_use]
+    pub fn boundary_length(&self) -> f64 {
+        let point = |i: u32| self.points.get(i as usize).copied();
+        let length = |[a, b]: [u32; 2]| Some(point(a)?.distance(point(b)?));
+        self.edges().filter_map(length).sum()
+    }
+
+    /// End points of every loop edge, loop by loop, then of every free segment.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let loops = self.loops.iter().flat_map(Loop::edges);
+        loops.chain(self.segments.iter().map(|s| s.vertices))
+    }
+}
+
+impl Loop {
+    /// A loop whose edges all carry `marker`.
+    #[must_use]
+    pub fn new(vertices: Vec<u32>, marker: i32, role: LoopRole) -> Self {
+        Self { markers: vec![marker; vertices.len()], vertices, role }
+    }
+
+    /// End points of the loop's edges; edge i runs from vertex i to vertex i + 1, cyclically.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let next = self.vertices.iter().skip(1).chain(self.vertices.first());
+        self.vertices.iter().zip(next).map(|(&a, &b)| [a, b])
+    }
 }
