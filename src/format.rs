@@ -1,9 +1,293 @@
-//! (to be written)
+//! Files: readers and writers of meshes and domains, one file a format.
+//!
+//! Readers take bytes and return plain arrays; a fault gives an error with its line (or byte) and
+//! the rule of `SPEC.md` that it breaks. Nothing is repaired: a reference to a point that does not
+//! exist is reported in [`MeshData::bad_references`], a cell that is no triangle is counted in
+//! [`MeshData::other_cells`]. Memory is bounded by the size of the input: a declared count is
+//! checked against the bytes that follow before anything is allocated.
 
 pub mod airfoil;
+mod assemble;
 mod domain_builder;
 pub mod domain_file;
 pub mod domain_json;
 mod domain_json_plain;
+mod error;
 pub mod geojson;
+mod msh;
+mod msh22;
+mod msh41;
+mod node_ele;
+mod off;
 pub mod poly;
+mod scan;
+#[cfg(test)]
+mod tests;
+mod text;
+mod view;
+mod vtu;
+
+pub use error::{At, ReadError, ReadFault, WriteError};
+pub use view::MeshView;
+
+use crate::mesh::MeshData;
+use std::io::Write;
+use std::path::Path;
+use text::TextOut;
+
+/// A form of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MeshForm {
+    /// Gmsh MSH 2.2 or 4.1, ASCII or binary.
+    Msh,
+    /// Triangle's `.ele` with its `.node` and `.edge`.
+    NodeEle,
+    /// Geomview OFF.
+    Off,
+    /// VTK XML unstructured grid.
+    Vtu,
+}
+
+impl std::fmt::Display for MeshForm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl MeshForm {
+    /// Every form.
+    pub const ALL: [Self; 4] = [Self::Msh, Self::NodeEle, Self::Off, Self::Vtu];
+
+    /// The form's name, as users know it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Msh => "Gmsh MSH",
+            Self::NodeEle => "Triangle .node/.ele",
+            Self::Off => "OFF",
+            Self::Vtu => "VTU",
+        }
+    }
+
+    /// The form of a file with this extension (without the dot, in any case), if it is a mesh's.
+    #[must_use]
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Some(match extension.to_ascii_lowercase().as_str() {
+            "msh" => Self::Msh,
+            "ele" => Self::NodeEle,
+            "off" => Self::Off,
+            "vtu" => Self::Vtu,
+            _ => return None,
+        })
+    }
+
+    /// The form of a file with this name.
+    #[must_use]
+    pub fn from_path(path: &Path) -> Option<Self> {
+        Self::from_extension(path.extension()?.to_str()?)
+    }
+
+    /// The form that the first bytes of a file show, if they show one.
+    #[must_use]
+    pub fn sniff(bytes: &[u8]) -> Option<Self> {
+        let head = bytes[..bytes.len().min(1024)].trim_ascii_start();
+        let has = |word: &[u8]| head.windows(word.len()).any(|window| window == word);
+        if head.starts_with(b"$MeshFormat") || head.starts_with(b"$Comments") {
+            Some(Self::Msh)
+        } else if head.starts_with(b"OFF") || head.starts_with(b"COFF") || head.starts_with(b"NOFF")
+        {
+            Some(Self::Off)
+        } else if has(b"<VTKFile") {
+            Some(Self::Vtu)
+        } else {
+            None
+        }
+    }
+
+    /// Whether the form is written.
+    #[must_use]
+    pub const fn is_written(self) -> bool {
+        match self {
+            Self::Msh | Self::NodeEle | Self::Off | Self::Vtu => true,
+        }
+    }
+
+    /// Whether a file of this form can be written with numbers in this encoding.
+    #[must_use]
+    pub fn has_encoding(self, encoding: Encoding) -> bool {
+        match encoding {
+            Encoding::Ascii => self.is_written(),
+            Encoding::Binary => matches!(self, Self::Msh | Self::Vtu),
+            Encoding::Compressed => self == Self::Vtu,
+        }
+    }
+
+    /// Whether a file of this form says which edges have which marker.
+    #[must_use]
+    pub const fn carries_edges(self) -> bool {
+        !matches!(self, Self::Off)
+    }
+
+    /// Whether a file of this form says which region a triangle is in.
+    #[must_use]
+    pub const fn carries_regions(self) -> bool {
+        !matches!(self, Self::Off)
+    }
+
+    /// The files that a mesh of this form has beside its main one: the caller reads them into
+    /// [`ReadOptions`], and writes them with [`write_companion`].
+    #[must_use]
+    pub const fn companions(self) -> &'static [Companion] {
+        match self {
+            Self::NodeEle => &[Companion::Nodes, Companion::Edges],
+            _ => &[],
+        }
+    }
+}
+
+/// A file beside the main file of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Companion {
+    /// Triangle's `.node`: the points. Required; a `.poly` may stand in for it.
+    Nodes,
+    /// Triangle's `.edge`: marked edges. Optional.
+    Edges,
+}
+
+impl Companion {
+    /// Its extension, without the dot.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Nodes => "node",
+            Self::Edges => "edge",
+        }
+    }
+}
+
+/// How to read a mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ReadOptions<'a> {
+    /// Split each quadrilateral (a, b, c, d) into (a, b, c) and (a, c, d) instead of counting it
+    /// among [`MeshData::other_cells`].
+    pub split_quads: bool,
+    /// The bytes of [`Companion::Nodes`]: a `.node` or `.poly` file.
+    pub nodes: Option<&'a [u8]>,
+    /// The bytes of [`Companion::Edges`].
+    pub edges: Option<&'a [u8]>,
+}
+
+/// How numbers are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// As text: decimals that read back to the same bits.
+    #[default]
+    Ascii,
+    /// As raw little-endian values (VTU: in base64).
+    Binary,
+    /// As [`Encoding::Binary`], compressed by zlib; VTU only.
+    Compressed,
+}
+
+impl Encoding {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Ascii => "ASCII",
+            Self::Binary => "binary",
+            Self::Compressed => "compressed",
+        }
+    }
+}
+
+/// A version of Gmsh's MSH form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MshVersion {
+    /// 2.2, which most other programs read.
+    V22,
+    /// 4.1, Gmsh's own since 2019.
+    #[default]
+    V41,
+}
+
+/// How to write a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Text or binary.
+    pub encoding: Encoding,
+    /// Version of an MSH file.
+    pub msh_version: MshVersion,
+}
+
+/// A reader, as the table [`READERS`] has it.
+pub type Reader = fn(&[u8], &ReadOptions) -> Result<MeshData, ReadError>;
+
+/// The reader of every form.
+pub const READERS: [(MeshForm, Reader); 3] =
+    [(MeshForm::Msh, msh::read), (MeshForm::NodeEle, node_ele::read), (MeshForm::Off, off::read)];
+
+/// Reads a mesh file: nothing repaired, nothing dropped.
+///
+/// # Errors
+/// The first fault, with its line or byte offset and the rule of SPEC 13.2 that it breaks.
+///
+/// # Complexity
+/// Time linear in the size of the input (with a logarithm where point numbers have large gaps);
+/// memory at most proportional to it.
+pub fn read_mesh(
+    bytes: &[u8],
+    form: MeshForm,
+    options: &ReadOptions,
+) -> Result<MeshData, ReadError> {
+    match READERS.iter().find(|(known, _)| *known == form) {
+        Some((_, reader)) => reader(bytes, options),
+        None => Err(ReadError { file: "", at: At::Byte(0), fault: ReadFault::UnknownForm }),
+    }
+}
+
+/// Writes the main file of a mesh; [`MeshForm::companions`] names the others.
+///
+/// What the form cannot carry is left out: [`MeshView::dropped_by`] says it beforehand.
+///
+/// # Errors
+/// [`WriteError`]; the output may then hold a part of the file.
+pub fn write_mesh(
+    mesh: MeshView,
+    form: MeshForm,
+    options: WriteOptions,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    mesh.validate()?;
+    let is_binary = options.encoding == Encoding::Binary;
+    if !form.has_encoding(options.encoding) {
+        return Err(WriteError::Encoding { form, encoding: options.encoding.name() });
+    }
+    let mut text = TextOut::new(out);
+    match form {
+        MeshForm::Msh if options.msh_version == MshVersion::V22 => {
+            msh22::write(mesh, is_binary, &mut text)?;
+        }
+        MeshForm::Msh => msh41::write(mesh, is_binary, &mut text)?,
+        MeshForm::NodeEle => node_ele::write_triangles(mesh, &mut text)?,
+        MeshForm::Off => off::write(mesh, &mut text)?,
+        MeshForm::Vtu => vtu::write(mesh, options.encoding, &mut text)?,
+    }
+    Ok(text.finish()?)
+}
+
+/// Writes a file that stands beside the main one.
+///
+/// # Errors
+/// [`WriteError`]; the output may then hold a part of the file.
+pub fn write_companion(
+    mesh: MeshView,
+    companion: Companion,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    mesh.validate()?;
+    let mut text = TextOut::new(out);
+    match companion {
+        Companion::Nodes => node_ele::write_nodes(mesh, &mut text)?,
+        Companion::Edges => node_ele::write_edges(mesh, &mut text)?,
+    }
+    Ok(text.finish()?)
+}

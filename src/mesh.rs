@@ -47,6 +47,17 @@ pub struct BadReference {
     pub value: i64,
 }
 
+/// A marked edge that names a point the file does not have; it is not among [`MeshData::edges`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BadEdge {
+    /// The file's own number of the edge, or its rank among the file's edges.
+    pub edge: i64,
+    /// What the file says, in the file's own numbering.
+    pub value: i64,
+    /// Line of the edge, when known.
+    pub line: Option<u64>,
+}
+
 /// Cells of a mesh file that are not triangles or marked edges: counted, never silently dropped.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OtherCells {
@@ -73,6 +84,8 @@ pub struct MeshData {
     pub regions: Vec<i32>,
     /// References to points that do not exist.
     pub bad_references: Vec<BadReference>,
+    /// Marked edges left out because they name points that do not exist.
+    pub bad_edges: Vec<BadEdge>,
     /// Cells of other kinds.
     pub other_cells: Vec<OtherCells>,
     /// The file's own number of each point when that is not 0, 1, 2, ...; else empty.
@@ -83,7 +96,8 @@ pub struct MeshData {
     pub point_lines: LineIndex,
     /// Line (1-based) of each triangle, or empty for a binary file.
     pub triangle_lines: LineIndex,
-    /// Fewest significant decimal digits among coordinates that needed rounding; `None` for binary.
+    /// Most significant decimal digits of a coordinate that is not exactly an f64 (below 17 means
+    /// that the file may not carry every f64); `None` for a binary file or when all are exact.
     pub decimal_digits: Option<u8>,
 }
 
@@ -98,7 +112,8 @@ pub struct LineIndex {
 impl LineIndex {
     /// Records that `entry` stands on `line`; entries must come in rising order.
     pub fn push(&mut self, entry: u32, line: u64) {
-        if self.line(entry) != Some(line) {
+        let predicted = self.runs.last().map(|&(first, at)| at + u64::from(entry - first));
+        if predicted != Some(line) {
             self.runs.push((entry, line));
         }
     }

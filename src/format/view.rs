@@ -1,0 +1,140 @@
+//! A mesh to be written, borrowed from whoever has it.
+
+use crate::format::MeshForm;
+use crate::format::error::WriteError;
+use crate::mesh::{MarkedEdge, Mesh, MeshData};
+use crate::point::Point2;
+
+/// Points in the plane or in space.
+#[derive(Clone, Copy, Debug)]
+enum Points<'a> {
+    Plane(&'a [Point2]),
+    Space(&'a [[f64; 3]]),
+}
+
+/// A borrowed mesh, plane or in space.
+///
+/// # Shapes and units
+/// As [`Mesh`] and [`MeshData`], which both convert into it.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshView<'a> {
+    points: Points<'a>,
+    triangles: &'a [[u32; 3]],
+    edges: &'a [MarkedEdge],
+    regions: &'a [i32],
+}
+
+impl<'a> From<&'a Mesh> for MeshView<'a> {
+    fn from(mesh: &'a Mesh) -> Self {
+        Self {
+            points: Points::Plane(&mesh.points),
+            triangles: &mesh.triangles,
+            edges: &mesh.edges,
+            regions: &mesh.regions,
+        }
+    }
+}
+
+impl<'a> From<&'a MeshData> for MeshView<'a> {
+    fn from(mesh: &'a MeshData) -> Self {
+        Self {
+            points: Points::Space(&mesh.points),
+            triangles: &mesh.triangles,
+            edges: &mesh.edges,
+            regions: &mesh.regions,
+        }
+    }
+}
+
+impl<'a> MeshView<'a> {
+    /// Number of points.
+    #[must_use]
+    pub fn point_count(&self) -> usize {
+        match self.points {
+            Points::Plane(points) => points.len(),
+            Points::Space(points) => points.len(),
+        }
+    }
+
+    /// Point `index`; z = 0 in the plane.
+    #[must_use]
+    #[inline]
+    pub fn point(&self, index: usize) -> [f64; 3] {
+        match self.points {
+            Points::Plane(points) => [points[index].x, points[index].y, 0.0],
+            Points::Space(points) => points[index],
+        }
+    }
+
+    /// The points in order.
+    pub fn points(self) -> impl Iterator<Item = [f64; 3]> + 'a {
+        (0..self.point_count()).map(move |index| self.point(index))
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub const fn triangles(&self) -> &'a [[u32; 3]] {
+        self.triangles
+    }
+
+    /// The marked edges.
+    #[must_use]
+    pub const fn edges(&self) -> &'a [MarkedEdge] {
+        self.edges
+    }
+
+    /// Whether the triangles have region markers.
+    #[must_use]
+    pub const fn has_regions(&self) -> bool {
+        !self.regions.is_empty()
+    }
+
+    /// Region of triangle `index`, or `default` when the mesh has none.
+    #[must_use]
+    #[inline]
+    pub fn region(&self, index: usize, default: i32) -> i32 {
+        self.regions.get(index).copied().unwrap_or(default)
+    }
+
+    /// Whether every z is +0.0, so that a form with two coordinates loses nothing.
+    #[must_use]
+    pub fn is_plane(&self) -> bool {
+        match self.points {
+            Points::Plane(_) => true,
+            Points::Space(points) => points.iter().all(|p| p[2].to_bits() == 0),
+        }
+    }
+
+    /// The first reference to a point that does not exist, or a list of wrong length.
+    ///
+    /// # Errors
+    /// [`WriteError::BadReference`], [`WriteError::Regions`].
+    pub fn validate(&self) -> Result<(), WriteError> {
+        let count = self.point_count();
+        let bad = |vertices: &[u32]| vertices.iter().any(|&vertex| vertex as usize >= count);
+        let (regions, triangles) = (self.regions.len(), self.triangles.len());
+        if regions != 0 && regions != triangles {
+            return Err(WriteError::Regions { regions, triangles });
+        }
+        if let Some(index) = self.triangles.iter().position(|triangle| bad(triangle)) {
+            return Err(WriteError::BadReference { item: "triangle", index });
+        }
+        if let Some(index) = self.edges.iter().position(|edge| bad(&edge.vertices)) {
+            return Err(WriteError::BadReference { item: "edge", index });
+        }
+        Ok(())
+    }
+
+    /// What `form` drops of this mesh, in words for a warning; empty when it keeps everything.
+    #[must_use]
+    pub fn dropped_by(&self, form: MeshForm) -> Vec<&'static str> {
+        let mut dropped = Vec::new();
+        if !self.edges.is_empty() && !form.carries_edges() {
+            dropped.push("marked edges");
+        }
+        if self.has_regions() && !form.carries_regions() {
+            dropped.push("regions");
+        }
+        dropped
+    }
+}
