@@ -1,6 +1,38 @@
 //! Geometric predicates: the sign of a polynomial in the coordinates, right for every finite f64.
+//!
+//! A question climbs a ladder and stops at the first rung that can answer it. No rung ever answers
+//! wrongly; a rung that cannot decide says so.
+//!
+//! | rung | file | answers |
+//! |---|---|---|
+//! | filter | `filter.rs` | whenever the float result exceeds its own error bound |
+//! | fixed | `fixed.rs` | whenever the coordinate differences fit one lattice of 126 bits |
+//! | adaptive | `adaptive.rs` | the rest, where expansions neither overflow nor underflow (`robust`) |
+//! | exact | `exact.rs` | everything else: 1e300 beside 1e-310 |
+//!
+//! Every function requires finite coordinates; with others it returns some sign, without a panic.
+//! No sign depends on build flags: Rust never contracts `a * b + c` to a fused operation, and the
+//! bounds of the filter hold for every IEEE 754 evaluation in double precision.
 
-use crate::point::Point2;
+mod adaptive;
+mod crossing;
+mod exact;
+mod filter;
+mod fixed;
+mod ladder;
+mod perturbed;
+mod segment;
+mod wide;
+
+pub use crossing::rounded_crossing;
+pub use ladder::{Rung, incircle, incircle_with_rung, orient2d, orient2d_with_rung};
+#[doc(hidden)]
+pub use ladder::{incircle_by_every_rung, orient2d_by_every_rung};
+pub use perturbed::incircle_perturbed;
+pub use segment::{
+    PointInTriangle, SegmentEnd, SegmentIntersection, WhichSegment, classify, on_collinear_segment,
+    point_in_triangle, point_on_segment,
+};
 
 /// The sign of an exact expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -15,6 +47,7 @@ pub enum Sign {
 
 impl Sign {
     /// The sign of a float; NaN counts as zero, so pass exact values only.
+    #[inline]
     #[must_use]
     pub fn of(value: f64) -> Self {
         if value > 0.0 {
@@ -27,6 +60,7 @@ impl Sign {
     }
 
     /// The sign of the negated expression.
+    #[inline]
     #[must_use]
     pub const fn reversed(self) -> Self {
         match self {
@@ -37,69 +71,14 @@ impl Sign {
     }
 }
 
-fn coord(p: Point2) -> robust::Coord<f64> {
-    robust::Coord { x: p.x, y: p.y }
-}
-
-/// Which side of the line from `a` to `b` the point `c` lies on: `Positive` on the left.
-#[must_use]
-pub fn orient2d(a: Point2, b: Point2, c: Point2) -> Sign {
-    Sign::of(robust::orient2d(coord(a), coord(b), coord(c)))
-}
-
-/// Whether `d` lies inside (`Positive`), on or outside the circle through the counterclockwise
-/// `a`, `b`, `c`.
-#[must_use]
-pub fn incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d)))
-}
-
-/// [`incircle`] under the symbolic perturbation of the lifted heights: `Zero` only if all four
-/// points are collinear or two of them are equal.
-///
-/// Every point's height x^2 + y^2 gets an infinitesimal of its own added, infinitely larger for the
-/// lexicographically larger point (Edelsbrunner and Muecke 1990, on the height alone).
-#[must_use]
-pub fn incircle_perturbed(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    let sign = incircle(a, b, c, d);
-    if sign == Sign::Zero { tie_break([a, b, c, d]) } else { sign }
-}
-
-/// Sign of the determinant's perturbation: the cofactor of the largest point that has a nonzero one.
-#[cold]
-fn tie_break(points: [Point2; 4]) -> Sign {
-    let mut order = [0, 1, 2, 3];
-    order.sort_by(|&i, &j| points[j].lexicographic(points[i]));
-    if order.windows(2).any(|w| points[w[0]] == points[w[1]]) {
-        return Sign::Zero;
-    }
-    order
-        .into_iter()
-        .map(|i| height_cofactor(points, i))
-        .find(|&sign| sign != Sign::Zero)
-        .unwrap_or(Sign::Zero)
-}
-
-/// Sign of the cofactor of point `i`'s height in the determinant with rows (x, y, height, 1).
-fn height_cofactor([a, b, c, d]: [Point2; 4], i: usize) -> Sign {
-    match i {
-        0 => orient2d(b, c, d),
-        1 => orient2d(a, c, d).reversed(),
-        2 => orient2d(a, b, d),
-        _ => orient2d(a, b, c).reversed(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_largest_corner_of_a_square_is_cut_off() {
-        let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point2::from);
-        assert_eq!(incircle_perturbed(a, b, d, c), Sign::Negative, "(1, 1) is raised most");
-        assert_eq!(incircle_perturbed(a, b, c, d), Sign::Positive);
-        assert_eq!(incircle_perturbed(b, c, d, a), Sign::Negative, "b and d are joined");
-        assert_eq!(incircle_perturbed(a, b, c, a), Sign::Zero, "equal points are one point");
+impl From<std::cmp::Ordering> for Sign {
+    /// The sign of a difference, from how its terms compare.
+    #[inline]
+    fn from(order: std::cmp::Ordering) -> Self {
+        match order {
+            std::cmp::Ordering::Less => Self::Negative,
+            std::cmp::Ordering::Equal => Self::Zero,
+            std::cmp::Ordering::Greater => Self::Positive,
+        }
     }
 }
