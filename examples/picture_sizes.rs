@@ -16,7 +16,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(&directory)?;
     let sizes: Vec<usize> = arguments.map(|a| a.parse()).collect::<Result<_, _>>()?;
     let sizes = if sizes.is_empty() { vec![10, 1_000, 10_000, 100_000] } else { sizes };
-    println!("{:>10} {:>6} {:>9} {:>9} {:>9} {:>9}", "triangles", "", "SVG s", "bytes", "PNG s", "bytes");
+    println!(
+        "{:>10} {:>6} {:>9} {:>9} {:>9} {:>9}",
+        "triangles", "", "SVG s", "bytes", "PNG s", "bytes"
+    );
     for &triangles in &sizes {
         for graded in [false, true] {
             let name = if graded { "graded" } else { "even" };
@@ -26,7 +29,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn measure(mesh: &MeshData, name: &str, directory: &Path) -> Result<(), Box<dyn std::error::Error>> {
+fn measure(
+    mesh: &MeshData,
+    name: &str,
+    directory: &Path,
+) -> Result<(), Box<dyn std::error::Error>> {
     let n = mesh.triangles.len();
     let layer = Layer::radius_ratio(mesh);
     let panels = [Panel::new(mesh, format!("{name}, Delaunay")).coloured(&layer)];
@@ -38,7 +45,11 @@ fn measure(mesh: &MeshData, name: &str, directory: &Path) -> Result<(), Box<dyn 
     let png = draw::png(&panels, &Options::default())?;
     let png_seconds = start.elapsed().as_secs_f64();
     std::fs::write(directory.join(format!("{name}-{n}.png")), &png)?;
-    println!("{n:>10} {name:>6} {svg_seconds:>9.3} {:>9} {png_seconds:>9.3} {:>9}", svg.len(), png.len());
+    println!(
+        "{n:>10} {name:>6} {svg_seconds:>9.3} {:>9} {png_seconds:>9.3} {:>9}",
+        svg.len(),
+        png.len()
+    );
     Ok(())
 }
 
@@ -103,7 +114,8 @@ struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 }

@@ -17,12 +17,12 @@ mod edges;
 mod frame;
 mod layer;
 mod legend;
+mod page;
+mod palette;
 mod panel;
 mod path;
 #[cfg(feature = "png")]
 mod png;
-mod page;
-mod palette;
 mod text;
 
 pub use frame::{ParseViewError, View};
@@ -115,7 +115,7 @@ impl Default for Options {
         Self {
             title: String::new(),
             width: 960.0,
-            panel_height: 900.0,
+            panel_height: 928.0,
             columns: 0,
             palette: Palette::default(),
             wireframe: true,
@@ -181,7 +181,8 @@ pub fn svg(panels: &[Panel<'_>], options: &Options) -> Result<String, DrawError>
     Ok(page::Page::new(panels, options).svg())
 }
 
-/// Draws the panels as a PNG: the picture of [`svg`], `png_scale` dots for each CSS pixel.
+/// Draws the panels as a PNG: the picture of [`svg`], `png_scale` dots for each CSS pixel. Where
+/// edges are closer together than dots, their tone is painted in place of lines.
 ///
 /// Text is set in DejaVu Sans, which is built in, so that it needs no fonts on the machine.
 ///
@@ -190,7 +191,8 @@ pub fn svg(panels: &[Panel<'_>], options: &Options) -> Result<String, DrawError>
 #[cfg(feature = "png")]
 pub fn png(panels: &[Panel<'_>], options: &Options) -> Result<Vec<u8>, DrawError> {
     check_input(panels, options)?;
-    png::png(&page::Page::new(panels, options), options)
+    let dots = f64::from(options.png_scale);
+    png::png(&page::Page::new(panels, options).rasterised(dots), options)
 }
 
 /// The widest page: beyond it SVG viewers lose precision.
@@ -227,3 +229,6 @@ fn check_panel(index: usize, panel: &Panel<'_>) -> Result<(), DrawError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

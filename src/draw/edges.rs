@@ -31,9 +31,7 @@ pub fn edges(mesh: &MeshData) -> Vec<Edge> {
         sides.extend([[a, b], [b, c], [c, a]].map(|e| key(e, false)));
     }
     let marked = mesh.edges.iter().map(|e| e.vertices);
-    sides.extend(
-        marked.filter(|e| e.iter().all(|&v| (v as usize) < points)).map(|e| key(e, true)),
-    );
+    sides.extend(marked.filter(|e| e.iter().all(|&v| (v as usize) < points)).map(|e| key(e, true)));
     sides.sort_unstable();
     sides.chunk_by(|a, b| a >> 1 == b >> 1).filter_map(classify).collect()
 }

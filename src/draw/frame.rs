@@ -37,12 +37,7 @@ impl View {
     fn around(points: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
         points.filter(|p| p[0].is_finite() && p[1].is_finite()).fold(None, |view, [x, y, _]| {
             let v = view.unwrap_or(Self { x0: x, y0: y, x1: x, y1: y });
-            Some(Self {
-                x0: v.x0.min(x),
-                y0: v.y0.min(y),
-                x1: v.x1.max(x),
-                y1: v.y1.max(y),
-            })
+            Some(Self { x0: v.x0.min(x), y0: v.y0.min(y), x1: v.x1.max(x), y1: v.y1.max(y) })
         })
     }
 
@@ -143,7 +138,8 @@ impl Frame {
     /// it (Sutherland and Hodgman, 1974); empty when nothing does.
     pub fn clip(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let m = Self::MARGIN;
-        let bounds = [(0, -m, 1.0), (0, self.size[0] + m, -1.0), (1, -m, 1.0), (1, self.size[1] + m, -1.0)];
+        let bounds =
+            [(0, -m, 1.0), (0, self.size[0] + m, -1.0), (1, -m, 1.0), (1, self.size[1] + m, -1.0)];
         let mut kept = polygon.to_vec();
         for (axis, bound, side) in bounds {
             kept = clip_half_plane(&kept, axis, bound, side);
@@ -208,7 +204,17 @@ mod tests {
     #[test]
     fn a_view_is_read_from_four_numbers_and_nothing_else() {
         assert_eq!("0,-1, 2.5 ,1e3".parse(), Ok(View { x0: 0.0, y0: -1.0, x1: 2.5, y1: 1e3 }));
-        for bad in ["", "1,2,3", "1,2,3,4,5", "a,b,c,d", "0,0,0,1", "1,0,0,1", "0,0,nan,1", "0,0,inf,1", "0,0,5e-324,1"] {
+        for bad in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "a,b,c,d",
+            "0,0,0,1",
+            "1,0,0,1",
+            "0,0,nan,1",
+            "0,0,inf,1",
+            "0,0,5e-324,1",
+        ] {
             let error = bad.parse::<View>().expect_err(bad);
             assert!(error.to_string().contains("x0,y0,x1,y1"), "{error}");
         }
@@ -217,7 +223,13 @@ mod tests {
     #[test]
     fn the_view_of_a_mesh_ignores_what_cannot_be_drawn() {
         let mesh = MeshData {
-            points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [f64::NAN; 3], [9.0, 9.0, 0.0]],
+            points: vec![
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [0.0, 2.0, 0.0],
+                [f64::NAN; 3],
+                [9.0, 9.0, 0.0],
+            ],
             triangles: vec![[0, 1, 2], [0, 1, 3], [0, 1, u32::MAX]],
             ..MeshData::default()
         };
@@ -227,7 +239,12 @@ mod tests {
 
     #[test]
     fn a_flat_or_single_point_mesh_has_a_proper_view() {
-        for points in [vec![[3.0, 4.0, 0.0]], vec![[0.0; 3], [1.0, 0.0, 0.0]], vec![[f64::MAX; 3]], vec![[0.0; 3]]] {
+        for points in [
+            vec![[3.0, 4.0, 0.0]],
+            vec![[0.0; 3], [1.0, 0.0, 0.0]],
+            vec![[f64::MAX; 3]],
+            vec![[0.0; 3]],
+        ] {
             let mesh = MeshData { points, ..MeshData::default() };
             let view = View::of(&mesh).expect("points are finite");
             assert!(view.is_proper(), "{view}");

@@ -37,11 +37,11 @@ impl Layer {
     }
 
     /// R/(2r), circumradius over twice the inradius, of every triangle: 1 is equilateral, infinite
-    /// is flat. Coloured over [1, 2] so that pictures of different meshes compare.
+    /// is flat. Coloured over [1, 1.6] so that pictures of different meshes compare.
     #[must_use]
     pub fn radius_ratio(mesh: &MeshData) -> Self {
         let values = mesh.triangles.iter().map(|&t| radius_ratio(mesh, t)).collect();
-        Self { range: [1.0, 2.0], ..Self::new("R/(2r)", values, Better::Low) }
+        Self { range: [1.0, 1.6], ..Self::new("R/(2r)", values, Better::Low) }
     }
 
     /// Where `value` lies in the palette: 0 at the good end, 1 at the bad one; `None` for NaN.

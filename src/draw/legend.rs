@@ -1,8 +1,8 @@
 //! The legend of a layer: a histogram over the palette, and the figures that sum it up.
 
+use super::Palette;
 use super::layer::{Better, Layer};
 use super::text::{self, Anchor};
-use super::Palette;
 use std::fmt::Write as _;
 
 /// Bars of the histogram.
@@ -53,7 +53,7 @@ impl Summary {
     }
 
     /// The figures in one line.
-    pub fn line(&self, better: Better) -> String {
+    fn line(&self, better: Better) -> String {
         let (most, worst) = match better {
             Better::Low => ("\u{2264}", "max"),
             Better::High => ("\u{2265}", "min"),
@@ -97,8 +97,12 @@ fn write_bars(
         let colour = palette.colour(shade);
         // A bar that is not empty can be seen.
         let height = if n == 0 { 0.0 } else { (n as f64 / tallest * HISTOGRAM).max(1.0) };
-        let [x, y, w, h] = [i as f64 * step, HISTOGRAM - height, step, height + BAR].map(text::pixels);
-        let _ = writeln!(out, "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"#{colour:06x}\" shape-rendering=\"crispEdges\"/>");
+        let [x, y, w, h] =
+            [i as f64 * step, HISTOGRAM - height, step, height + BAR].map(text::pixels);
+        let _ = writeln!(
+            out,
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"#{colour:06x}\" shape-rendering=\"crispEdges\"/>"
+        );
         let _ = write!(outline, "V{y}H{}", text::pixels((i + 1) as f64 * step));
     }
     let _ = writeln!(
@@ -129,7 +133,10 @@ fn write_ticks(out: &mut String, width: f64, (layer, summary): (&Layer, &Summary
         };
         text::push(out, [t * width, y], anchor, SMALL, &label);
     }
-    text::push(out, [width / 2.0, y + 14.0], Anchor::Middle, NAME, &layer.name);
+    let name = format!("{}: {}", layer.name, summary.line(layer.better));
+    // Set in a smaller size than it is measured by: the figures matter more than the margin.
+    let name = text::fitted(&name, width, 9.5);
+    text::push(out, [width / 2.0, y + 15.0], Anchor::Middle, NAME, &name);
 }
 
 const SMALL: &str = " font-size=\"10\" fill=\"#4a4f57\"";
@@ -139,7 +146,7 @@ const NAME: &str = " font-size=\"11\" fill=\"#22262c\"";
 fn beyond(layer: &Layer, summary: &Summary, end: usize) -> bool {
     let outside = |v: &f64| if end == 0 { *v < layer.range[0] } else { *v > layer.range[1] };
     let worst_end = usize::from(layer.better == Better::Low);
-    if end == worst_end { outside(&summary.worst) } else { layer.values.iter().any(|v| outside(v)) }
+    if end == worst_end { outside(&summary.worst) } else { layer.values.iter().any(outside) }
 }
 
 #[cfg(test)]
@@ -172,7 +179,8 @@ mod tests {
 
     #[test]
     fn ends_say_when_values_lie_beyond() {
-        let layer = Layer { range: [1.0, 2.0], ..Layer::new("q", vec![0.5, 1.5, 3.0], Better::Low) };
+        let layer =
+            Layer { range: [1.0, 2.0], ..Layer::new("q", vec![0.5, 1.5, 3.0], Better::Low) };
         let summary = Summary::of(&layer).expect("values");
         let mut out = String::new();
         write(&mut out, [0.0, 0.0], 300.0, (&layer, &summary), Palette::default());
@@ -180,6 +188,6 @@ mod tests {
         let inside = Layer { range: [0.0, 4.0], ..layer };
         let mut out = String::new();
         write(&mut out, [0.0, 0.0], 300.0, (&inside, &summary), Palette::default());
-        assert!(!out.contains('\u{2264}') && !out.contains('\u{2265}'), "{out}");
+        assert!(!out.contains("\u{2264} 0<") && !out.contains('\u{2265}'), "{out}");
     }
 }

@@ -78,11 +78,22 @@ impl<'a> Page<'a> {
         }
     }
 
+    /// The same page to be drawn with so many dots a pixel.
+    #[cfg(feature = "png")]
+    pub fn rasterised(mut self, dots: f64) -> Self {
+        self.cells.iter_mut().for_each(|cell| cell.drawing.rasterised(dots));
+        self
+    }
+
     /// The document.
     pub fn svg(&self) -> String {
         let mut out = String::new();
         let [width, height] = [self.options.width, self.height].map(text::pixels);
-        let _ = writeln!(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{}\">", text::FONT);
+        let _ = writeln!(
+            out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{}\">",
+            text::FONT
+        );
         let _ = writeln!(out, "<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
         if !self.options.title.is_empty() {
             let title = text::fitted(&self.options.title, self.options.width - 2.0 * MARGIN, 16.0);
@@ -141,7 +152,7 @@ impl Cell<'_> {
         let panel = self.drawing.panel;
         let caption = text::fitted(&panel.caption, self.width, 13.0);
         text::push(out, [x, y + 13.0], Anchor::Start, CAPTION_STYLE, &caption);
-        let figures = text::fitted(&self.figures(), self.width, 11.0 * 0.9);
+        let figures = text::fitted(&self.figures(), self.width, 11.0);
         text::push(out, [x, y + 29.0], Anchor::Start, FIGURES_STYLE, &figures);
         self.drawing.write(out, id, options);
         if let (Some(layer), Some(summary)) = (panel.layer, &self.summary) {
@@ -152,27 +163,22 @@ impl Cell<'_> {
         self.write_list(out);
     }
 
-    /// The line under the caption: how many triangles, and what the layer amounts to.
+    /// The line under the caption: how many triangles, and how many of them are not to be seen.
     fn figures(&self) -> String {
-        let panel = self.drawing.panel;
-        let mut line = format!("{} triangles", text::count(panel.mesh.triangles.len()));
-        if let (Some(layer), Some(summary)) = (panel.layer, &self.summary) {
-            let _ = write!(line, ", {}: {}", layer.name, summary.line(layer.better));
-        }
+        let total = text::count(self.drawing.panel.mesh.triangles.len());
         match self.drawing.undrawable() {
-            0 => {}
+            0 => format!("{total} triangles"),
             n => {
-                let _ = write!(line, "; {} not drawn (bad index or coordinate)", text::count(n));
+                format!("{total} triangles, {} not drawn (bad index or coordinate)", text::count(n))
             }
         }
-        line
     }
 
     fn write_list(&self, out: &mut String) {
         let highlights = self.drawing.panel.highlights;
         let mut y = self.below + self.legend_height() + 10.0;
         for (i, highlight) in highlights.iter().take(LIST_MAX).enumerate() {
-            let line = text::fitted(&format!("{}  {}", i + 1, highlight.label), self.width, 11.0);
+            let line = text::fitted(&format!("{}: {}", i + 1, highlight.label), self.width, 11.0);
             text::push(out, [self.corner[0], y], Anchor::Start, FIGURES_STYLE, &line);
             y += LIST_LINE;
         }

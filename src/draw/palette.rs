@@ -17,11 +17,9 @@ pub enum Palette {
     Grey,
 }
 
-/// Stops of Brewer's `YlGnBu` with nine classes.
-const YL_GN_BU: [u32; 9] = [
-    0xff_ffd9, 0xed_f8b1, 0xc7_e9b4, 0x7f_cdbb, 0x41_b6c4, 0x1d_91c0, 0x22_5ea8, 0x25_3494,
-    0x08_1d58,
-];
+/// The first eight of the nine stops of Brewer's `YlGnBu`: on the ninth, black lines vanish.
+const YL_GN_BU: [u32; 8] =
+    [0xff_ffd9, 0xed_f8b1, 0xc7_e9b4, 0x7f_cdbb, 0x41_b6c4, 0x1d_91c0, 0x22_5ea8, 0x25_3494];
 /// Ten evenly spaced stops of viridis, reversed.
 const VIRIDIS: [u32; 10] = [
     0xfd_e725, 0xb5_de2b, 0x6e_ce58, 0x35_b779, 0x1f_9e89, 0x26_828e, 0x31_688e, 0x3e_4989,
@@ -56,7 +54,7 @@ impl Palette {
 }
 
 /// Blends channel by channel; `t` in [0, 1].
-fn mix(from: u32, to: u32, t: f64) -> u32 {
+pub(super) fn mix(from: u32, to: u32, t: f64) -> u32 {
     let channel = |shift: u32| {
         let (a, b) = (f64::from(from >> shift & 0xff), f64::from(to >> shift & 0xff));
         ((a + (b - a) * t).round() as u32) << shift
@@ -68,8 +66,7 @@ fn mix(from: u32, to: u32, t: f64) -> u32 {
 mod tests {
     use super::*;
 
-    const ALL: [Palette; 4] =
-        [Palette::YlGnBu, Palette::Viridis, Palette::Cividis, Palette::Grey];
+    const ALL: [Palette; 4] = [Palette::YlGnBu, Palette::Viridis, Palette::Cividis, Palette::Grey];
 
     /// CIE L* of an sRGB colour.
     fn lightness(colour: u32) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::edges::{self, Edge, Kind};
 use super::frame::Frame;
+use super::palette::mix;
 use super::path::PathData;
 use super::{Highlight, Options, Panel, View, text};
 use std::fmt::Write as _;
@@ -12,27 +13,32 @@ const SHADES: usize = 48;
 const PLAIN: u32 = 0xee_f1f4;
 /// Fill of triangles whose value is NaN.
 const NO_VALUE: u32 = 0xb8_b8b8;
-const LINE: &str = "#2b2f36";
+const LINE: u32 = 0x16_181c;
+const BOUNDARY: u32 = 0;
+const CONSTRAINT: u32 = 0xc2_185b;
+const BACKGROUND: u32 = 0x7b_3fa0;
 /// Okabe and Ito's vermilion: apart from every palette colour for every eye.
 const MARK: &str = "#d55e00";
-const BACKGROUND: &str = "#c0417f";
 
-/// Classes of line width: edges up to this many pixels long get a line this wide. About four
-/// per cent of the length, so that the share of ink is the same for every element size and dense
-/// parts never clog; on the page a line is at most 0.7 wide.
-const WIDTHS: [(f64, f64); 8] = [
-    (0.35, 0.012),
-    (0.75, 0.025),
-    (1.5, 0.05),
-    (3.0, 0.1),
-    (6.0, 0.18),
-    (12.0, 0.3),
-    (24.0, 0.45),
-    (f64::INFINITY, 0.65),
-];
-/// The same for boundary edges, bold.
-const BOUNDARY_WIDTHS: [(f64, f64); 5] =
-    [(0.75, 0.4), (1.5, 0.55), (3.0, 0.8), (6.0, 1.1), (f64::INFINITY, 1.5)];
+/// Edges are drawn in classes of length, each this much longer than the last: small enough that
+/// the step in line width between classes cannot be seen.
+const CLASS_RATIO: f64 = 1.15;
+/// Longest edge of the first class and the number of classes: from 0.02 pixels to 75.
+const CLASS_FIRST: f64 = 0.02;
+const CLASSES: usize = 60;
+
+/// Width of the lines of edges `length` pixels long: about four per cent of a short edge, so that
+/// the share of ink is the same for every element size and dense parts never clog; at most 0.7.
+fn line_width(length: f64) -> f64 {
+    0.7 * length / (length + 18.0)
+}
+
+/// How much of a dense part the lines cover: 3/2 edges a triangle, four per cent of the length
+/// wide, over the area of an equilateral triangle, less what overlaps at the corners.
+const INK: f64 = 0.11;
+
+/// Boundaries and constraints are bold, whatever their edges' length.
+const BOLD: f64 = 1.3;
 
 /// A panel laid out on the page.
 pub struct Drawing<'a> {
@@ -42,20 +48,29 @@ pub struct Drawing<'a> {
     places: Vec<[f64; 2]>,
     edges: Vec<Edge>,
     cropped: bool,
+    /// Edges shorter than this, in pixels, are not drawn as lines: their triangles are tinted.
+    dense: f64,
 }
 
 impl<'a> Drawing<'a> {
     pub fn new(panel: &'a Panel<'a>, mut frame: Frame) -> Self {
-        let places: Vec<_> =
-            panel.mesh.points.iter().map(|p| frame.place([p[0], p[1]])).collect();
+        let places: Vec<_> = panel.mesh.points.iter().map(|p| frame.place([p[0], p[1]])).collect();
         let edges = edges::edges(panel.mesh);
         frame.unit = unit(&edges, &places);
-        Self { panel, frame, places, edges, cropped: panel.view.is_some() }
+        Self { panel, frame, places, edges, cropped: panel.view.is_some(), dense: 0.0 }
+    }
+
+    /// For a raster of so many dots a pixel: lines closer than its dots would add up to rounding
+    /// errors of the blending, so the tone that they stand for is painted instead.
+    #[cfg(feature = "png")]
+    pub fn rasterised(&mut self, dots: f64) {
+        self.dense = 1.5 / dots;
     }
 
     /// Writes the panel; `id` tells it from the page's other panels.
     pub fn write(&self, out: &mut String, id: usize, options: &Options) {
-        let ([x, y], [w, h]) = (self.frame.corner.map(text::pixels), self.frame.size.map(text::pixels));
+        let ([x, y], [w, h]) =
+            (self.frame.corner.map(text::pixels), self.frame.size.map(text::pixels));
         let clip = if self.cropped {
             let _ = writeln!(
                 out,
@@ -67,7 +82,10 @@ impl<'a> Drawing<'a> {
         };
         let _ = writeln!(out, "<g transform=\"translate({x} {y})\"><g{clip}>");
         let unit = self.frame.unit;
-        let _ = writeln!(out, "<g transform=\"scale({unit})\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");
+        let _ = writeln!(
+            out,
+            "<g transform=\"scale({unit})\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">"
+        );
         self.write_fills(out, options);
         self.write_lines(out, options);
         self.write_background(out);
@@ -75,7 +93,10 @@ impl<'a> Drawing<'a> {
         self.write_marks(out);
         out.push_str("</g>\n");
         if self.cropped {
-            let _ = writeln!(out, "<rect width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"#8a8f98\" stroke-width=\"0.75\"/>");
+            let _ = writeln!(
+                out,
+                "<rect width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"#8a8f98\" stroke-width=\"0.75\"/>"
+            );
         }
         self.write_outline(out);
         out.push_str("</g>\n");
@@ -93,21 +114,29 @@ impl<'a> Drawing<'a> {
     }
 
     fn write_fills(&self, out: &mut String, options: &Options) {
-        let mut shades: Vec<PathData> = vec![PathData::default(); SHADES + 1];
+        // Each shade twice: plain, and tinted for dense parts.
+        let mut shades: Vec<PathData> = vec![PathData::default(); 2 * (SHADES + 1)];
         for (i, &triangle) in self.panel.mesh.triangles.iter().enumerate() {
             if let Some(corners) = self.corners(triangle) {
-                self.add_polygon(&mut shades[self.shade(i)], &corners);
+                let tinted = usize::from(options.wireframe && self.is_dense(triangle));
+                self.add_polygon(&mut shades[2 * self.shade(i) + tinted], &corners);
             }
         }
         // Crisp edges: anti-aliased neighbours would leave a pale seam between them.
         out.push_str("<g shape-rendering=\"crispEdges\">\n");
         for (shade, path) in shades.into_iter().enumerate() {
             if let Some(data) = path.finish() {
-                let colour = self.colour(shade, options);
+                let plain = self.colour(shade / 2, options);
+                let colour = if shade % 2 == 0 { plain } else { mix(plain, LINE, INK) };
                 let _ = writeln!(out, "<path fill=\"#{colour:06x}\" d=\"{data}\"/>");
             }
         }
         out.push_str("</g>\n");
+    }
+
+    fn is_dense(&self, [a, b, c]: [u32; 3]) -> bool {
+        let short = |edge: &[u32; 2]| length(*edge, &self.places) < self.dense;
+        [[a, b], [b, c], [c, a]].iter().filter(|edge| short(edge)).count() >= 2
     }
 
     /// Which of the shades a triangle has; the last one is for no value.
@@ -138,45 +167,51 @@ impl<'a> Drawing<'a> {
 
     fn write_lines(&self, out: &mut String, options: &Options) {
         if options.wireframe {
-            self.write_classes(out, Kind::Interior, &WIDTHS, LINE);
+            self.write_interior(out);
         }
-        self.write_classes(out, Kind::Constraint, &BOUNDARY_WIDTHS, "#1b6fb5");
-        self.write_classes(out, Kind::Boundary, &BOUNDARY_WIDTHS, "#000");
+        for (kind, colour) in [(Kind::Constraint, CONSTRAINT), (Kind::Boundary, BOUNDARY)] {
+            let list: Vec<_> =
+                self.edges.iter().filter(|e| e.kind == kind).map(|e| e.vertices).collect();
+            self.write_strokes(out, (&list, &self.places), BOLD, colour);
+        }
     }
 
-    fn write_classes(&self, out: &mut String, kind: Kind, widths: &[(f64, f64)], colour: &str) {
-        let mut classes = vec![Vec::new(); widths.len()];
-        for edge in self.edges.iter().filter(|e| e.kind == kind) {
+    fn write_interior(&self, out: &mut String) {
+        let mut classes = vec![Vec::new(); CLASSES];
+        for edge in self.edges.iter().filter(|e| e.kind == Kind::Interior) {
             let length = length(edge.vertices, &self.places);
-            let class = widths.iter().position(|w| length <= w.0);
-            if let Some(class) = class {
-                classes[class].push(edge.vertices);
+            if length >= self.dense {
+                classes[class(length)].push(edge.vertices);
             }
         }
-        for (class, &(_, width)) in classes.iter().zip(widths) {
-            let width = width / self.frame.unit;
-            if let Some(data) = self.strokes(class, &self.places) {
-                let _ = writeln!(
-                    out,
-                    "<path stroke=\"{colour}\" stroke-width=\"{}\" d=\"{data}\"/>",
-                    text::pixels(width)
-                );
-            }
+        let mut longest = CLASS_FIRST;
+        for list in &classes {
+            self.write_strokes(out, (list, &self.places), line_width(longest), LINE);
+            longest *= CLASS_RATIO;
+        }
+    }
+
+    fn write_strokes(
+        &self,
+        out: &mut String,
+        (list, places): (&[[u32; 2]], &[[f64; 2]]),
+        width: f64,
+        colour: u32,
+    ) {
+        if let Some(data) = self.strokes(list, places) {
+            let width = text::pixels(width / self.frame.unit);
+            let _ = writeln!(
+                out,
+                "<path stroke=\"#{colour:06x}\" stroke-width=\"{width}\" d=\"{data}\"/>"
+            );
         }
     }
 
     fn write_background(&self, out: &mut String) {
         let Some(mesh) = self.panel.background else { return };
-        let places: Vec<_> =
-            mesh.points.iter().map(|p| self.frame.place([p[0], p[1]])).collect();
+        let places: Vec<_> = mesh.points.iter().map(|p| self.frame.place([p[0], p[1]])).collect();
         let list: Vec<_> = edges::edges(mesh).iter().map(|e| e.vertices).collect();
-        if let Some(data) = self.strokes(&list, &places) {
-            let width = text::pixels(0.5 / self.frame.unit);
-            let _ = writeln!(
-                out,
-                "<path stroke=\"{BACKGROUND}\" stroke-width=\"{width}\" d=\"{data}\"/>"
-            );
-        }
+        self.write_strokes(out, (&list, &places), 0.5, BACKGROUND);
     }
 
     /// Path data through `edges`, cut to the frame.
@@ -228,7 +263,10 @@ impl<'a> Drawing<'a> {
         let reach = ((x1 - x0).max(y1 - y0) / 2.0).min(1e4);
         if reach < 6.0 {
             let [cx, cy, r] = [x, y, reach + 5.0].map(text::pixels);
-            let _ = writeln!(out, "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"{r}\" fill=\"none\" stroke=\"{MARK}\" stroke-width=\"1.4\"/>");
+            let _ = writeln!(
+                out,
+                "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"{r}\" fill=\"none\" stroke=\"{MARK}\" stroke-width=\"1.4\"/>"
+            );
         }
         let away = 0.75 * (reach.min(40.0) + 6.0);
         let at = [x + away, y - away];
@@ -273,7 +311,10 @@ impl<'a> Drawing<'a> {
         if let Some(data) = path.finish() {
             let unit = self.frame.unit;
             let width = text::pixels(width / unit);
-            let _ = writeln!(out, "<path transform=\"scale({unit})\" {fill} stroke=\"{MARK}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" d=\"{data}\"/>");
+            let _ = writeln!(
+                out,
+                "<path transform=\"scale({unit})\" {fill} stroke=\"{MARK}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" d=\"{data}\"/>"
+            );
         }
     }
 
@@ -304,6 +345,18 @@ impl Bounds {
 fn length([a, b]: [u32; 2], places: &[[f64; 2]]) -> f64 {
     let ([ax, ay], [bx, by]) = (places[a as usize], places[b as usize]);
     ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt()
+}
+
+/// Which class an edge of this length belongs to; the last one takes all longer ones, and edges
+/// without a length.
+fn class(length: f64) -> usize {
+    let mut longest = CLASS_FIRST;
+    let mut class = 0;
+    while class < CLASSES - 1 && (length > longest || length.is_nan()) {
+        longest *= CLASS_RATIO;
+        class += 1;
+    }
+    class
 }
 
 /// The step of path coordinates: a fortieth of a small edge, so that small elements keep their

@@ -41,9 +41,8 @@ impl PathData {
     }
 
     fn pair(&mut self, place: [i64; 2]) {
-        for axis in 0..2 {
-            let step = place[axis].saturating_sub(self.pen[axis]);
-            self.number(step);
+        for (to, from) in place.into_iter().zip(self.pen) {
+            self.number(to.saturating_sub(from));
         }
         self.pen = place;
     }

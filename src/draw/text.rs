@@ -72,8 +72,14 @@ pub fn short(value: f64) -> String {
     if value == 0.0 {
         "0".to_owned()
     } else if !value.is_finite() {
-        if value.is_nan() { "no value" } else if value > 0.0 { "\u{221e}" } else { "-\u{221e}" }
-            .to_owned()
+        if value.is_nan() {
+            "no value"
+        } else if value > 0.0 {
+            "\u{221e}"
+        } else {
+            "-\u{221e}"
+        }
+        .to_owned()
     } else if (1e-3..1e5).contains(&size) {
         let decimals = if size >= 1000.0 {
             0
