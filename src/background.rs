@@ -148,6 +148,13 @@ impl Background {
         self.regions.get(tag.checked_sub(INSIDE + 1)? as usize)
     }
 
+    /// Marker of the region that a triangle's tag names; 0 where no seed named it.
+    #[must_use]
+    pub fn region_of_tag(&self, tag: u32) -> i32 {
+        let region = tag.checked_sub(INSIDE + 1).and_then(|i| self.regions.get(i as usize));
+        region.map_or(0, |region| region.marker)
+    }
+
     /// The inside triangles alone, in compact slots, with the domain's vertices and tags: the
     /// starting state of the front. No ghosts; every boundary edge and both sides of every interior
     /// constraint is `Across::Border(i)` with `i` the index into the list returned beside it, which

@@ -1,1 +1,315 @@
-//! (to be written)
+//! The pipeline: a domain in, a mesh out, a line per stage.
+
+mod field;
+mod options;
+mod scale;
+
+pub use options::{Gradation, Method, Options, OptionsError};
+
+use crate::background::{Background, BackgroundError};
+use crate::domain::Domain;
+use crate::domain::validate::{Fault, Plc, validate};
+use crate::front::{self, FrontError, FrontMesh, FrontOptions, FrontStats, Start};
+use crate::improve::{ImproveStats, improve};
+use crate::mesh::{MarkedEdge, Mesh};
+use crate::point::Point2;
+use crate::size::Prediction;
+use crate::triangulation::{Across, HalfEdgeId, Triangulation};
+use field::Fields;
+use scale::Scale;
+use std::collections::HashMap;
+
+/// A stage of the pipeline, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Finding every fault of the domain.
+    Validate,
+    /// Constrained Delaunay triangulation of the boundary.
+    Background,
+    /// Node spacings, size field and prediction.
+    Size,
+    /// The advancing front.
+    Front,
+    /// Flips and smoothing.
+    Improve,
+    /// Plain arrays.
+    Collect,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Validate => "validate",
+            Self::Background => "background",
+            Self::Size => "size field",
+            Self::Front => "front",
+            Self::Improve => "improve",
+            Self::Collect => "collect",
+        })
+    }
+}
+
+/// Watches a run: for progress bars, timings and stopping. The library has no clock of its own.
+pub trait Observer {
+    /// A stage begins.
+    fn stage(&mut self, _stage: Stage) {}
+    /// The prediction is known; `false` stops the run.
+    fn predicted(&mut self, _prediction: Prediction) -> bool {
+        true
+    }
+    /// The front has laid this many triangles; `false` stops the run.
+    fn progress(&mut self, _triangles: usize) -> bool {
+        true
+    }
+}
+
+/// An observer that does not look.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {}
+
+/// A mesh and how it came about.
+#[derive(Clone, Debug)]
+pub struct Meshed {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Wanted spacing at each of its points.
+    pub spacing: Vec<f64>,
+    /// Triangles predicted before meshing.
+    pub prediction: Prediction,
+    /// What the front did.
+    pub front: FrontStats,
+    /// What improvement did.
+    pub improve: ImproveStats,
+}
+
+/// Why there is no mesh.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum MeshError {
+    /// The domain is invalid; every fault is listed.
+    #[error("the domain has {} fault{}; the first: {}", .0.len(), if .0.len() == 1 { "" } else { "s" }, .0[0])]
+    Invalid(Vec<Fault>),
+    /// The domain is sound but a seed is not, or nothing is inside.
+    #[error(transparent)]
+    Background(#[from] BackgroundError),
+    /// The prediction is above the limit.
+    #[error(
+        "the size field asks for {}{predicted:.0} triangles, above the limit of {limit}: raise \
+         --max-triangles, or take a coarser field (a larger --growth or --spacing)",
+        if *.stopped { "more than " } else { "about " }
+    )]
+    TooMany {
+        /// Predicted number of triangles.
+        predicted: f64,
+        /// Whether the prediction is only a lower bound.
+        stopped: bool,
+        /// The limit.
+        limit: usize,
+    },
+    /// The front gave up.
+    #[error(transparent)]
+    Front(#[from] FrontError),
+    /// Options that make no sense.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+}
+
+/// Meshes a domain: graded triangulation by an advancing front (SPEC 7).
+///
+/// The boundary's points and segments are kept. The result is conforming; nothing about it needs
+/// to be believed, since [`check`](crate::check) can be asked.
+///
+/// # Errors
+/// [`MeshError`]: an invalid domain (all its faults), a budget passed, senseless options.
+///
+/// # Complexity
+/// O(n log n) for n boundary points, plus linear time in the number of triangles.
+pub fn mesh_domain(
+    domain: &Domain,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<Meshed, MeshError> {
+    options.check()?;
+    observer.stage(Stage::Validate);
+    let plc = validate(domain).map_err(MeshError::Invalid)?;
+    mesh_plc(plc, options, observer)
+}
+
+/// Meshes a validated domain. See [`mesh_domain`].
+///
+/// # Errors
+/// As [`mesh_domain`], but for faults of the domain.
+pub fn mesh_plc(
+    mut plc: Plc,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<Meshed, MeshError> {
+    options.check()?;
+    let scale = Scale::of(&plc.points);
+    scale.shrink(&mut plc);
+
+    observer.stage(Stage::Background);
+    let background = Background::new(&plc)?;
+
+    observer.stage(Stage::Size);
+    let fields = Fields::new(&background, options, &scale);
+    let prediction = fields.predict(options.triangles_max);
+    if prediction.triangles > options.triangles_max as f64 {
+        return Err(MeshError::TooMany {
+            predicted: prediction.triangles,
+            stopped: prediction.stopped,
+            limit: options.triangles_max,
+        });
+    }
+    if !observer.predicted(prediction) {
+        return Err(FrontError::Stopped.into());
+    }
+
+    observer.stage(Stage::Front);
+    let mut laid = lay(&fields, options, prediction, &scale, observer)?;
+    let borders = border_half_edges(&laid.mesh, background.edges.len());
+    join_constraints(&mut laid.mesh, &background, &borders);
+
+    observer.stage(Stage::Improve);
+    let fixed = background.points.len();
+    let improved = improve(&mut laid.mesh, &mut laid.points, fixed, options.improve);
+
+    observer.stage(Stage::Collect);
+    Ok(collect(laid, &background, improved, prediction, &scale))
+}
+
+/// Lays the triangles: by the front, or none but the background's own.
+fn lay(
+    fields: &Fields,
+    options: &Options,
+    prediction: Prediction,
+    scale: &Scale,
+    observer: &mut dyn Observer,
+) -> Result<FrontMesh, MeshError> {
+    let start = fields.start();
+    if options.method == Method::DelaunayInitial {
+        let Start { points, region, spacing, .. } = start;
+        return Ok(FrontMesh { points, mesh: region, spacing, stats: FrontStats::default() });
+    }
+    let front_options = FrontOptions {
+        order: options.order,
+        rules: options.rules,
+        clamp: options.clamp,
+        vertices_max: backstop(prediction),
+        quantum: scale.quantum(),
+    };
+    Ok(front::advance(start, fields.field(), front_options, &mut |n| observer.progress(n))?)
+}
+
+/// New vertices at which the front gives up: three times as many as predicted.
+fn backstop(prediction: Prediction) -> usize {
+    // A triangle mesh has half as many vertices as triangles.
+    (1.5 * prediction.triangles) as usize + 1000
+}
+
+/// For each border value of the mesh its half-edge.
+fn border_half_edges(mesh: &Triangulation, count: usize) -> Vec<Option<HalfEdgeId>> {
+    let mut borders = vec![None; count];
+    for e in mesh.triangles().flat_map(|t| t.half_edges()) {
+        if let Across::Border(owner) = mesh.across(e) {
+            borders[owner as usize] = Some(e);
+        }
+    }
+    borders
+}
+
+/// Glues the two sides of each interior constraint, along which the front was cut.
+fn join_constraints(
+    mesh: &mut Triangulation,
+    background: &Background,
+    borders: &[Option<HalfEdgeId>],
+) {
+    let interior = &background.edges[background.boundary_count..];
+    let mut waiting = HashMap::new();
+    for (edge, &side) in interior.iter().zip(&borders[background.boundary_count..]) {
+        let side = side.expect("a front edge has a triangle");
+        let [a, b] = edge.vertices;
+        match waiting.remove(&[b, a]) {
+            None => {
+                waiting.insert([a, b], side);
+            }
+            Some(other) => {
+                mesh.link(side, other);
+                mesh.set_constrained(side, true);
+            }
+        }
+    }
+    debug_assert!(waiting.is_empty(), "an interior constraint with one side");
+}
+
+/// Plain arrays in the user's coordinates, without points that no triangle uses.
+fn collect(
+    laid: FrontMesh,
+    background: &Background,
+    improve: ImproveStats,
+    prediction: Prediction,
+    scale: &Scale,
+) -> Meshed {
+    let FrontMesh { points, mesh: topology, spacing, stats } = laid;
+    let mut triangles: Vec<[u32; 3]> =
+        topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
+    let renumber = Renumber::used(&triangles, points.len());
+    for corner in triangles.iter_mut().flatten() {
+        *corner = renumber.new(*corner);
+    }
+    let regions = region_markers(&topology, background);
+    let edges = marked_edges(background, &renumber);
+    let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
+    let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
+    let mesh = Mesh { points, triangles, edges, regions };
+    Meshed { mesh, spacing, prediction, front: stats, improve }
+}
+
+fn region_markers(topology: &Triangulation, background: &Background) -> Vec<i32> {
+    if background.regions.is_empty() {
+        return Vec::new();
+    }
+    topology.triangles().map(|t| background.region_of_tag(topology.tag(t))).collect()
+}
+
+/// Boundary edges first, then each interior constraint once.
+fn marked_edges(background: &Background, renumber: &Renumber) -> Vec<MarkedEdge> {
+    let (boundary, interior) = background.edges.split_at(background.boundary_count);
+    boundary
+        .iter()
+        .chain(interior.iter().filter(|edge| edge.vertices[0] < edge.vertices[1]))
+        .map(|edge| MarkedEdge {
+            vertices: edge.vertices.map(|v| renumber.new(v.0)),
+            marker: edge.marker,
+        })
+        .collect()
+}
+
+/// New numbers of the points in use, in the old order.
+struct Renumber {
+    new: Vec<u32>,
+}
+
+const UNUSED: u32 = u32::MAX;
+
+impl Renumber {
+    fn used(triangles: &[[u32; 3]], points: usize) -> Self {
+        let mut new = vec![UNUSED; points];
+        for &v in triangles.iter().flatten() {
+            new[v as usize] = 0;
+        }
+        for (slot, number) in new.iter_mut().filter(|n| **n != UNUSED).zip(0..) {
+            *slot = number;
+        }
+        Self { new }
+    }
+
+    fn new(&self, old: u32) -> u32 {
+        self.new[old as usize]
+    }
+
+    fn kept<'a, T: Copy>(&'a self, items: &'a [T]) -> impl Iterator<Item = T> + 'a {
+        items.iter().zip(&self.new).filter(|&(_, &n)| n != UNUSED).map(|(&item, _)| item)
+    }
+}

@@ -1,1 +1,69 @@
-//! (to be written)
+//! Spacing: the edge length wanted at a point.
+//!
+//! Definitions, and which inequality each field keeps, are in SPEC chapter 6. All fields rank
+//! candidates and choose positions; no decision about validity rests on them.
+
+mod direct;
+mod growth;
+mod nodal;
+mod predict;
+mod spacing;
+
+pub use direct::DirectField;
+pub use growth::{GrowthField, Source};
+pub use nodal::{NodalField, NodalRule};
+pub use predict::{Prediction, predict};
+pub use spacing::{Density, node_spacing};
+
+use crate::point::Point2;
+use crate::triangulation::TriangleId;
+
+/// Where the last question was answered: a caller keeps one per front edge, so that a walk starts
+/// on the right side of a thin wall and is short.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hint(pub TriangleId);
+
+/// The base edge a question is asked for: `afm` and the clamp depend on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Length of the base edge: the mean of the spacings at its ends.
+    pub length: f64,
+}
+
+/// A size field.
+#[derive(Debug)]
+pub enum SizeField {
+    /// The same length everywhere.
+    Uniform(f64),
+    /// Growth-limited distance to the boundary nodes (the default).
+    Growth(GrowthField),
+    /// The report's field: node spacings interpolated on the background triangulation.
+    Nodal(NodalField),
+    /// The report's direct grading from the two nearest edges of the initial front.
+    Direct(DirectField),
+    /// Plain advancing front: this factor times the length of the base edge.
+    BaseLength(f64),
+}
+
+impl SizeField {
+    /// The spacing wanted at `p` for a triangle on `base`; `hint` is read and updated.
+    ///
+    /// Positive and finite for every finite `p`. Costs a walk (nodal), a descent of a tree
+    /// (growth), two searches of a tree (direct) or nothing.
+    #[must_use]
+    pub fn at(&self, p: Point2, base: Base, hint: &mut Hint) -> f64 {
+        match self {
+            Self::Uniform(h) => *h,
+            Self::Growth(field) => field.at(p),
+            Self::Nodal(field) => field.at(p, hint),
+            Self::Direct(field) => field.at(p),
+            Self::BaseLength(stretch) => stretch * base.length,
+        }
+    }
+
+    /// Whether neighbouring values differ by a bounded slope, so that clearances may trust them.
+    #[must_use]
+    pub fn is_lipschitz(&self) -> bool {
+        matches!(self, Self::Uniform(_) | Self::Growth(_))
+    }
+}

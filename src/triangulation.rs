@@ -55,7 +55,7 @@ pub enum Across {
 }
 
 /// One slot: three half-edges and the flags.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Slot {
     origin: [VertexId; 3],
@@ -70,7 +70,7 @@ const LIVE: u32 = 1 << 3;
 const TAG_SHIFT: u32 = 4;
 
 /// Flat half-edge triangulation with recycled slots.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Triangulation {
     slots: Vec<Slot>,
     free: Vec<u32>,

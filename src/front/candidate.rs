@@ -1,0 +1,298 @@
+//! Trial points on a base edge, scored against the open triangle's own apex.
+//!
+//! Floats rank here; what is valid is decided by the cavity's exact predicates.
+
+use super::vertex::Vertices;
+use crate::point::Point2;
+use crate::triangulation::{Across, HalfEdgeId, Triangulation, VertexId};
+
+/// How a trial point is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rules {
+    /// The point at the two wanted lengths and the bisectors of the adjacent front angles are
+    /// scored against the existing apex by the worst triangle each would make.
+    Scored,
+    /// The report's three rules on the smaller adjacent front angle: below 90 degrees close it,
+    /// up to 120 degrees one point on its bisector, beyond that one isosceles triangle.
+    Hard,
+}
+
+/// A point that might be inserted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Trial {
+    pub(super) point: Point2,
+    /// Spacing at the point: its clearances are measured in it.
+    pub(super) spacing: f64,
+    /// Way from the boundary.
+    pub(super) depth: f64,
+    score: f64,
+}
+
+/// At most three trials, best first.
+pub(super) type Trials = [Option<Trial>; 3];
+
+/// The base edge, its open triangle's apex, and the front edges next to it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Neighbours {
+    pub(super) a: Point2,
+    pub(super) b: Point2,
+    apex: Point2,
+    spacing: [f64; 3],
+    depth: f64,
+    /// Far end of the front edge that ends in `a`, and the angle there.
+    left: Corner,
+    /// Far end of the front edge that starts in `b`, and the angle there.
+    right: Corner,
+}
+
+/// A corner of the front at an end of the base edge, on the open side.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    far: Point2,
+    /// Cosine of the angle between base edge and front edge.
+    cosine: f64,
+    /// Whether the angle is below 180 degrees.
+    convex: bool,
+}
+
+impl Corner {
+    fn new(at: Point2, along: Point2, far: Point2, turns_left: bool) -> Self {
+        let (ux, uy) = (along.x - at.x, along.y - at.y);
+        let (vx, vy) = (far.x - at.x, far.y - at.y);
+        let norm = ((ux * ux + uy * uy) * (vx * vx + vy * vy)).sqrt();
+        let cross = ux * vy - uy * vx;
+        Self {
+            far,
+            cosine: (ux * vx + uy * vy) / norm,
+            convex: if turns_left { cross > 0.0 } else { cross < 0.0 },
+        }
+    }
+
+    /// Whether the angle is below the one with this cosine.
+    fn is_below(&self, cosine: f64) -> bool {
+        self.convex && self.cosine > cosine
+    }
+}
+
+impl Neighbours {
+    /// Looks around the base edge in the open region; costs a rotation about each end.
+    pub(super) fn around(open: &Triangulation, vertices: &Vertices, base: HalfEdgeId) -> Self {
+        let [a, b, c] = [open.origin(base), open.dest(base), open.apex(base)];
+        let [pa, pb, apex] = [a, b, c].map(|v| vertices.point(v));
+        let far = |v: VertexId| vertices.point(v);
+        Self {
+            a: pa,
+            b: pb,
+            apex,
+            spacing: [a, b, c].map(|v| vertices.spacing(v)),
+            depth: 0.5 * (vertices.depth(a) + vertices.depth(b)),
+            left: Corner::new(pa, pb, far(left_end(open, base)), true),
+            right: Corner::new(pb, pa, far(right_end(open, base)), false),
+        }
+    }
+}
+
+impl Neighbours {
+    /// Mean of the spacings at the ends of the base edge: its length, freed of the accidents of
+    /// placement. Had new spacings been taken from the length itself, they would drift.
+    pub(super) fn mean_spacing(&self) -> f64 {
+        0.5 * (self.spacing[0] + self.spacing[1])
+    }
+}
+
+/// Origin of the front edge that ends where the base edge starts.
+fn left_end(open: &Triangulation, base: HalfEdgeId) -> VertexId {
+    let mut e = base.prev();
+    while let Across::Twin(twin) = open.across(e) {
+        e = twin.prev();
+    }
+    open.origin(e)
+}
+
+/// Destination of the front edge that starts where the base edge ends.
+fn right_end(open: &Triangulation, base: HalfEdgeId) -> VertexId {
+    let mut e = base.next();
+    while let Across::Twin(twin) = open.across(e) {
+        e = twin.next();
+    }
+    open.dest(e)
+}
+
+/// An inserted point must beat the existing apex by this factor.
+const NEW_POINT_WEIGHT: f64 = 0.97;
+/// Evaluations of the field for a scored trial: the second moves the point by less than 2 %.
+const SCORED_STEPS: usize = 2;
+/// Evaluations for the report's fixed point, and its tolerance.
+const HARD_STEPS: usize = 20;
+const FIXED_POINT_TOLERANCE: f64 = 1e-3;
+/// A corner up to 150 degrees is closed by the triangle next to the trial one.
+const COS_WEDGE: f64 = -0.866_025_403_784_438_6;
+/// A bisector point is tried between 80 and 145 degrees.
+const COS_BISECT_MIN: f64 = 0.173_648_177_666_930_3;
+const COS_BISECT_MAX: f64 = -0.819_152_044_288_991_8;
+
+/// The trial points worth inserting on a base edge; `field` gives the spacing at a point.
+pub(super) fn trials(
+    n: &Neighbours,
+    rules: Rules,
+    clamp: f64,
+    mut field: impl FnMut(Point2) -> f64,
+) -> Trials {
+    let placer = Placer { n, clamp, base: n.a.distance(n.b) };
+    match rules {
+        Rules::Scored => placer.scored(&mut field),
+        Rules::Hard => placer.hard(&mut field),
+    }
+}
+
+struct Placer<'a> {
+    n: &'a Neighbours,
+    clamp: f64,
+    base: f64,
+}
+
+impl Placer<'_> {
+    fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> [Option<Trial>; 3] {
+        let n = self.n;
+        let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
+        let bisect = |corner: &Corner, at: Point2, along: Point2| {
+            (corner.is_below(COS_BISECT_MAX) && !corner.is_below(COS_BISECT_MIN))
+                .then(|| self.bisector(corner, at, along, spacing))
+        };
+        let floor = self.apex_score();
+        let mut trials = [
+            Some(front),
+            bisect(&n.left, n.a, n.b),
+            bisect(&n.right, n.b, n.a),
+        ]
+        .map(|point| point.map(|point| self.trial(point, spacing)));
+        for trial in &mut trials {
+            if trial.is_some_and(|t| NEW_POINT_WEIGHT * t.score <= floor) {
+                *trial = None;
+            }
+        }
+        let score = |t: &Option<Trial>| t.map_or(f64::NEG_INFINITY, |t| t.score);
+        trials.sort_by(|t, u| score(u).total_cmp(&score(t)));
+        trials
+    }
+
+    fn hard(&self, field: &mut impl FnMut(Point2) -> f64) -> [Option<Trial>; 3] {
+        let n = self.n;
+        let sharper_left = n.left.convex && (!n.right.convex || n.left.cosine >= n.right.cosine);
+        let (corner, at, along) =
+            if sharper_left { (&n.left, n.a, n.b) } else { (&n.right, n.b, n.a) };
+        if corner.is_below(0.0) {
+            return [None; 3];
+        }
+        let (front, spacing) = self.settle(HARD_STEPS, field, |p, h| p.isosceles(h));
+        let point =
+            if corner.is_below(-0.5) { self.bisector(corner, at, along, spacing) } else { front };
+        [Some(self.trial(point, spacing)), None, None]
+    }
+
+    /// Repeats spacing and place until they agree; returns both, the spacing being the last one
+    /// evaluated.
+    fn settle(
+        &self,
+        steps: usize,
+        field: &mut impl FnMut(Point2) -> f64,
+        place: impl Fn(&Self, f64) -> Point2,
+    ) -> (Point2, f64) {
+        let mean = self.n.mean_spacing();
+        let mut spacing = mean;
+        let mut point = place(self, spacing);
+        for _ in 0..steps {
+            let last = spacing;
+            spacing = field(point).clamp(mean / self.clamp, mean * self.clamp);
+            point = place(self, spacing);
+            if (spacing - last).abs() <= FIXED_POINT_TOLERANCE * spacing {
+                break;
+            }
+        }
+        (point, spacing)
+    }
+
+    fn trial(&self, point: Point2, spacing: f64) -> Trial {
+        let height = cross(self.n.a, self.n.b, point) / self.base;
+        Trial { point, spacing, depth: self.n.depth + height, score: self.score(point, spacing) }
+    }
+
+    /// The wanted length between vertices of these spacings, in reach of the base edge.
+    fn length(&self, h: f64, k: f64) -> f64 {
+        (0.5 * (h + k)).clamp(self.base / self.clamp, self.base * self.clamp)
+    }
+
+    /// The point at the wanted length from either end of the base edge.
+    fn two_lengths(&self, spacing: f64) -> Point2 {
+        let [h_a, h_b, _] = self.n.spacing;
+        self.at_lengths(self.length(h_a, spacing), self.length(h_b, spacing))
+    }
+
+    /// The apex of the isosceles triangle with sides of the wanted length.
+    fn isosceles(&self, spacing: f64) -> Point2 {
+        let side = self.length(spacing, spacing);
+        self.at_lengths(side, side)
+    }
+
+    /// The point left of the base edge at the given distances from its ends.
+    fn at_lengths(&self, from_a: f64, from_b: f64) -> Point2 {
+        let Neighbours { a, b, .. } = *self.n;
+        let d = self.base;
+        let along = 0.5 * (d + (from_a - from_b) * ((from_a + from_b) / d));
+        let height = (from_a * from_a - along * along).max(0.04 * from_a * from_a).sqrt();
+        let (ux, uy) = ((b.x - a.x) / d, (b.y - a.y) / d);
+        Point2::new(a.x + along * ux - height * uy, a.y + along * uy + height * ux)
+    }
+
+    /// The point on the bisector of a corner, at the mean of its two edges and the wanted length.
+    fn bisector(&self, corner: &Corner, at: Point2, along: Point2, spacing: f64) -> Point2 {
+        let side = at.distance(corner.far);
+        let (ux, uy) = ((along.x - at.x) / self.base, (along.y - at.y) / self.base);
+        let (vx, vy) = ((corner.far.x - at.x) / side, (corner.far.y - at.y) / side);
+        let (wx, wy) = (ux + vx, uy + vy);
+        let norm = (wx * wx + wy * wy).sqrt();
+        let length = 0.35 * (self.base + side) + 0.3 * spacing;
+        Point2::new(at.x + length * wx / norm, at.y + length * wy / norm)
+    }
+
+    /// Score of the open triangle: its shape, and how its sides fit the wanted lengths.
+    fn apex_score(&self) -> f64 {
+        let n = self.n;
+        shape(n.a, n.b, n.apex) * self.fit(n.apex, n.spacing[2])
+    }
+
+    /// Score of a new point: the worst of its triangle and of those that it leaves in the corners.
+    fn score(&self, p: Point2, spacing: f64) -> f64 {
+        let n = self.n;
+        let mut worst = shape(n.a, n.b, p);
+        if n.left.is_below(COS_WEDGE) {
+            worst = worst.min(shape(n.a, p, n.left.far));
+        }
+        if n.right.is_below(COS_WEDGE) {
+            worst = worst.min(shape(p, n.b, n.right.far));
+        }
+        worst * self.fit(p, spacing)
+    }
+
+    /// How well the two sides at `p` fit the wanted lengths: 1 when they do, towards 0. The eighth
+    /// root makes it a tie-break beside the shape: without it uniform meshes drift, with its square
+    /// root graded ones get too many vertices of degree 5 and 7 (measured on three domains).
+    fn fit(&self, p: Point2, spacing: f64) -> f64 {
+        let n = self.n;
+        let side = |end: Point2, h: f64| {
+            let ratio = end.distance(p) / (0.5 * (h + spacing));
+            ratio.min(1.0 / ratio)
+        };
+        (side(n.a, n.spacing[0]) * side(n.b, n.spacing[1])).sqrt().sqrt().sqrt()
+    }
+}
+
+fn cross(a: Point2, b: Point2, c: Point2) -> f64 {
+    (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
+}
+
+/// Mean ratio 4 sqrt(3) area / (sum of squared sides): 1 when equilateral, negative when inverted.
+pub(super) fn shape(a: Point2, b: Point2, c: Point2) -> f64 {
+    const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
+    TWO_SQRT_3 * cross(a, b, c) / (a.distance_sq(b) + b.distance_sq(c) + c.distance_sq(a))
+}

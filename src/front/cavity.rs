@@ -1,0 +1,159 @@
+//! The Delaunay cavity of a trial point in the open region: it decides exactly whether the point
+//! may be inserted, holds the vertices and front edges it must keep clear of, and is refilled with
+//! the new triangles (Bowyer 1981; Watson 1981).
+
+use super::candidate::Trial;
+use super::vertex::Vertices;
+use crate::point::Point2;
+use crate::predicates::{Sign, incircle_perturbed, orient2d};
+use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
+
+/// Scratch space of the cavity; reused, so that the front allocates nothing per step.
+#[derive(Default)]
+pub(super) struct Cavity {
+    epoch: u32,
+    /// Triangles whose circumcircle contains the point, in the order they were found.
+    triangles: Vec<TriangleId>,
+    /// Their outline, counterclockwise, the base edge first.
+    ring: Vec<RingEdge>,
+    stack: Vec<HalfEdgeId>,
+    moved: Vec<(u32, HalfEdgeId)>,
+}
+
+#[derive(Clone, Copy)]
+struct RingEdge {
+    origin: VertexId,
+    dest: VertexId,
+    across: Across,
+}
+
+/// The two open half-edges at the new point that become front edges.
+pub(super) struct Fan {
+    /// From the base edge's origin to the new point.
+    pub(super) from_a: HalfEdgeId,
+    /// From the new point to the base edge's destination.
+    pub(super) to_b: HalfEdgeId,
+}
+
+/// A new point keeps this fraction of its spacing from every other vertex it sees.
+const CLEARANCE_VERTEX: f64 = 0.66;
+/// And this fraction from every front edge.
+const CLEARANCE_EDGE: f64 = 0.4;
+
+impl Cavity {
+    /// Finds the cavity of `p` that contains the open triangle on `base`; `false` when that
+    /// triangle does not belong to it or `p` does not see the whole outline from strictly inside.
+    pub(super) fn carve(
+        &mut self,
+        open: &mut Triangulation,
+        vertices: &Vertices,
+        base: HalfEdgeId,
+        p: Point2,
+    ) -> bool {
+        self.begin();
+        if !self.absorb(open, vertices, base.triangle(), p) {
+            return false;
+        }
+        self.stack.extend([base.prev(), base.next(), base]);
+        while let Some(e) = self.stack.pop() {
+            let across = open.across(e);
+            if let Across::Twin(twin) = across
+                && e != base
+            {
+                if open.mark(twin.triangle()) == self.epoch {
+                    // The cavity closes around a vertex: it is no disk.
+                    return false;
+                }
+                if self.absorb(open, vertices, twin.triangle(), p) {
+                    self.stack.extend([twin.prev(), twin.next()]);
+                    continue;
+                }
+            }
+            let (origin, dest) = (open.origin(e), open.dest(e));
+            if orient2d(vertices.point(origin), vertices.point(dest), p) != Sign::Positive {
+                return false;
+            }
+            self.ring.push(RingEdge { origin, dest, across });
+        }
+        true
+    }
+
+    fn begin(&mut self) {
+        // Marks of recycled slots are 0, so an epoch is never 0; 2^32 insertions do not fit memory.
+        self.epoch += 1;
+        self.triangles.clear();
+        self.ring.clear();
+        self.stack.clear();
+        self.moved.clear();
+    }
+
+    fn absorb(
+        &mut self,
+        open: &mut Triangulation,
+        vertices: &Vertices,
+        t: TriangleId,
+        p: Point2,
+    ) -> bool {
+        let [a, b, c] = open.corners(t).map(|v| vertices.point(v));
+        let inside = incircle_perturbed(a, b, c, p) == Sign::Positive;
+        if inside {
+            open.set_mark(t, self.epoch);
+            self.triangles.push(t);
+        }
+        inside
+    }
+
+    /// Whether the trial keeps its clearances from the outline. The nearest vertex that a point
+    /// sees is its neighbour in the Delaunay triangulation, so it is on the outline. Float
+    /// arithmetic: this ranks, `carve` has decided.
+    pub(super) fn is_clear(&self, vertices: &Vertices, trial: &Trial) -> bool {
+        let vertex_sq = (CLEARANCE_VERTEX * trial.spacing).powi(2);
+        let edge_sq = (CLEARANCE_EDGE * trial.spacing).powi(2);
+        let ends = self.ring[0];
+        self.ring[1..].iter().all(|edge| {
+            let origin = vertices.point(edge.origin);
+            let is_end = edge.origin == ends.origin || edge.origin == ends.dest;
+            (is_end || origin.distance_sq(trial.point) >= vertex_sq)
+                && (matches!(edge.across, Across::Twin(_))
+                    || segment_distance_sq(origin, vertices.point(edge.dest), trial.point)
+                        >= edge_sq)
+        })
+    }
+
+    /// Replaces the carved triangles by the fan of `p`, without the triangle on the base edge.
+    pub(super) fn fill(&mut self, open: &mut Triangulation, p: VertexId) -> Fan {
+        let tag = open.tag(self.triangles[0]);
+        for &t in &self.triangles {
+            open.remove(t);
+        }
+        let mut fan: Option<Fan> = None;
+        for edge in &self.ring[1..] {
+            let t = open.add([edge.origin, edge.dest, p]);
+            open.set_tag(t, tag);
+            open.relink(t.half_edge(0), edge.across);
+            if let Across::Border(owner) = edge.across {
+                self.moved.push((owner, t.half_edge(0)));
+            }
+            fan = Some(match fan {
+                None => Fan { from_a: t.half_edge(1), to_b: t.half_edge(2) },
+                Some(Fan { from_a, to_b }) => {
+                    open.link(from_a, t.half_edge(2));
+                    Fan { from_a: t.half_edge(1), to_b }
+                }
+            });
+        }
+        fan.expect("an outline has at least three edges")
+    }
+
+    /// The front edges whose half-edge changed in the last `fill`.
+    pub(super) fn moved_borders(&self) -> &[(u32, HalfEdgeId)] {
+        &self.moved
+    }
+}
+
+fn segment_distance_sq(a: Point2, b: Point2, p: Point2) -> f64 {
+    let (ux, uy) = (b.x - a.x, b.y - a.y);
+    let (wx, wy) = (p.x - a.x, p.y - a.y);
+    let along = ((wx * ux + wy * uy) / (ux * ux + uy * uy)).clamp(0.0, 1.0);
+    Point2::new(a.x + along * ux, a.y + along * uy).distance_sq(p)
+}

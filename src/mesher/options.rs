@@ -1,0 +1,130 @@
+//! What a user can ask of the mesher.
+
+use crate::front::{Order, Rules};
+use crate::improve::ImproveOptions;
+use crate::size::Density;
+
+/// How the domain is meshed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Graded triangulation: the front with spacings from a size field.
+    Graded,
+    /// Plain advancing front: spacings from the base edge alone.
+    Afm,
+    /// The front with spacings from the two nearest edges of the initial front.
+    Direct,
+    /// The constrained Delaunay triangulation of the boundary, without new points.
+    DelaunayInitial,
+}
+
+/// How spacings at the boundary become a spacing inside (method graded).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gradation {
+    /// h(x) = min over nodes of (h_i + growth |x - x_i|).
+    Growth,
+    /// The report's L = a L1 + b L2 + c L3 on the background triangulation.
+    Mean,
+    /// The same divided by three.
+    Third,
+    /// The same length everywhere.
+    Uniform,
+}
+
+/// Options of the mesher. [`Options::default`] is the graded method with growth 0.25.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Method.
+    pub method: Method,
+    /// Which edges make the spacing at a node.
+    pub density: Density,
+    /// How spacings are spread inside.
+    pub gradation: Gradation,
+    /// Largest slope of the spacing (gradation growth).
+    pub growth: f64,
+    /// A side stays within [b / clamp, clamp b] of its base edge b.
+    pub clamp: f64,
+    /// The length of gradation uniform, in the unit of the domain; `None`: the mean length of the
+    /// boundary edges.
+    pub spacing: Option<f64>,
+    /// Side of a new triangle over its base edge (method afm).
+    pub stretch: f64,
+    /// Order of base edges.
+    pub order: Order,
+    /// Rules for trial points.
+    pub rules: Rules,
+    /// More predicted triangles than this are an error before any work.
+    pub triangles_max: usize,
+    /// Improvement after the front.
+    pub improve: ImproveOptions,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Method::Graded,
+            density: Density::BoundaryEdges,
+            gradation: Gradation::Growth,
+            growth: 0.25,
+            clamp: 1.5,
+            spacing: None,
+            stretch: 1.2,
+            order: Order::Depth,
+            rules: Rules::Scored,
+            triangles_max: 20_000_000,
+            improve: ImproveOptions::default(),
+        }
+    }
+}
+
+/// Options that make no sense.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {value}, but must be {rule}")]
+pub struct OptionsError {
+    /// The option as the command line names it.
+    pub name: &'static str,
+    /// What was given.
+    pub value: f64,
+    /// What is allowed.
+    pub rule: &'static str,
+}
+
+impl Options {
+    /// Whether every number is in its range.
+    ///
+    /// # Errors
+    /// The first option out of range.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        let demand = |name, value: f64, holds: bool, rule| {
+            if holds { Ok(()) } else { Err(OptionsError { name, value, rule }) }
+        };
+        demand("growth", self.growth, (0.0..=10.0).contains(&self.growth), "from 0 to 10")?;
+        demand("clamp", self.clamp, (1.0..=100.0).contains(&self.clamp), "from 1 to 100")?;
+        demand("stretch", self.stretch, (0.5..=10.0).contains(&self.stretch), "from 0.5 to 10")?;
+        if let Some(h) = self.spacing {
+            demand("spacing", h, h.is_finite() && h > 0.0, "positive and finite")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // spec: H6
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        assert_eq!(Options::default().check(), Ok(()));
+        let broken = [
+            (Options { growth: -0.1, ..Options::default() }, "growth"),
+            (Options { growth: f64::NAN, ..Options::default() }, "growth"),
+            (Options { clamp: 0.9, ..Options::default() }, "clamp"),
+            (Options { stretch: f64::INFINITY, ..Options::default() }, "stretch"),
+            (Options { spacing: Some(0.0), ..Options::default() }, "spacing"),
+            (Options { spacing: Some(f64::NAN), ..Options::default() }, "spacing"),
+        ];
+        for (options, name) in broken {
+            assert_eq!(options.check().unwrap_err().name, name);
+        }
+    }
+}
