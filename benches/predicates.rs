@@ -5,7 +5,10 @@
 
 use std::hint::black_box;
 
-use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::WallTime;
+use criterion::{
+    BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main,
+};
 use trigrade::point::Point2;
 use trigrade::predicates::{incircle, incircle_perturbed, orient2d, rounded_crossing};
 
@@ -101,34 +104,41 @@ fn coord(p: Point2) -> robust::Coord<f64> {
     robust::Coord { x: p.x, y: p.y }
 }
 
-fn measure<T>(criterion: &mut Criterion, name: &str, quads: &[Quad], answer: impl Fn(&Quad) -> T) {
-    let mut group = criterion.benchmark_group(name);
-    group.throughput(Throughput::Elements(quads.len() as u64));
-    group.bench_function("", |bencher| {
-        bencher.iter(|| {
-            for quad in quads {
-                black_box(answer(black_box(quad)));
-            }
+/// The benchmarks of one class of input.
+struct Class<'a> {
+    group: BenchmarkGroup<'a, WallTime>,
+    quads: &'a [Quad],
+}
+
+impl Class<'_> {
+    fn measure<T>(&mut self, name: &str, answer: impl Fn(Quad) -> T) {
+        self.group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                for &quad in self.quads {
+                    black_box(answer(black_box(quad)));
+                }
+            });
         });
-    });
+    }
 }
 
 fn predicates(criterion: &mut Criterion) {
-    for (class, quads) in &classes() {
-        let name = |function| format!("{function}/{class}");
-        measure(criterion, &name("orient2d"), quads, |&[a, b, c, _]| orient2d(a, b, c));
-        measure(criterion, &name("orient2d robust"), quads, |q| {
-            let [a, b, c, _] = q.map(coord);
+    for (name, quads) in &classes() {
+        let mut group = criterion.benchmark_group(*name);
+        group.throughput(Throughput::Elements(quads.len() as u64));
+        let mut class = Class { group, quads };
+        class.measure("orient2d", |[a, b, c, _]| orient2d(a, b, c));
+        class.measure("orient2d by robust", |quad| {
+            let [a, b, c, _] = quad.map(coord);
             robust::orient2d(a, b, c)
         });
-        measure(criterion, &name("incircle"), quads, |&[a, b, c, d]| incircle(a, b, c, d));
-        measure(criterion, &name("incircle perturbed"), quads, |&[a, b, c, d]| {
-            incircle_perturbed(a, b, c, d)
-        });
-        measure(criterion, &name("incircle robust"), quads, |q| {
-            let [a, b, c, d] = q.map(coord);
+        class.measure("incircle", |[a, b, c, d]| incircle(a, b, c, d));
+        class.measure("incircle by robust", |quad| {
+            let [a, b, c, d] = quad.map(coord);
             robust::incircle(a, b, c, d)
         });
+        class.measure("incircle_perturbed", |[a, b, c, d]| incircle_perturbed(a, b, c, d));
+        class.group.finish();
     }
 }
 

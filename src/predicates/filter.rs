@@ -73,13 +73,9 @@ pub(super) fn incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sig
     decide(det, INCIRCLE_ERROR * permanent + underflow)
 }
 
+/// One branch for the bound, which is seldom missed, and none for the sign, which nobody can predict.
 #[inline(always)]
 fn decide(det: f64, bound: f64) -> Option<Sign> {
-    if det > bound {
-        Some(Sign::Positive)
-    } else if det < -bound {
-        Some(Sign::Negative)
-    } else {
-        None
-    }
+    let sign = if det > 0.0 { Sign::Positive } else { Sign::Negative };
+    (det.abs() > bound).then_some(sign)
 }

@@ -80,10 +80,11 @@ fn times(a: i64, b: i64) -> i128 {
     i128::from(a) * i128::from(b)
 }
 
-/// `N` exact differences, each a rounded value plus its rounding error, and the lattice they share.
+/// `N` exact differences and the lattice they share.
 struct Differences<const N: usize> {
     rounded: [Dyadic; N],
-    errors: [Dyadic; N],
+    /// What rounding cut off the differences, if anything.
+    errors: Option<[Dyadic; N]>,
     /// Exponent of the lattice's unit.
     unit: i32,
     /// Every difference is below 2^width units in magnitude.
@@ -96,16 +97,14 @@ impl<const N: usize> Differences<N> {
     fn of(pairs: [(f64, f64); N]) -> Option<Self> {
         let split = pairs.map(|(a, b)| two_diff(a, b));
         let rounded = split.map(|(value, _)| Dyadic::of(value));
-        let errors = if split.iter().all(|&(_, error)| error == 0.0) {
-            [Dyadic::ZERO; N]
-        } else {
-            split.map(|(_, error)| Dyadic::of(error))
-        };
-        let mut unit = Dyadic::ZERO.unit;
-        let mut top = Dyadic::ZERO.top;
-        for part in rounded.iter().chain(&errors) {
-            unit = unit.min(part.unit);
-            top = top.max(part.top);
+        // Bits, not comparisons, so that there is one branch for all.
+        let error_bits = split.iter().fold(0, |bits, (_, error)| bits | error.abs().to_bits());
+        let errors = (error_bits != 0).then(|| split.map(|(_, error)| Dyadic::of(error)));
+        let mut unit = least_unit(&rounded);
+        let mut top = greatest_top(&rounded);
+        if let Some(errors) = &errors {
+            unit = unit.min(least_unit(errors));
+            top = top.max(greatest_top(errors));
         }
         // A value and its error add up to at most 2^top, since the sum rounds to the value; one bit
         // more makes the bound strict.
@@ -116,17 +115,35 @@ impl<const N: usize> Differences<N> {
     /// The differences in units, for a width of at most 62.
     #[inline(always)]
     fn narrow(&self) -> [i64; N] {
-        std::array::from_fn(|i| {
-            self.rounded[i].in_units(self.unit) + self.errors[i].in_units(self.unit)
-        })
+        let mut differences = self.rounded.map(|part| part.in_units(self.unit));
+        if let Some(errors) = &self.errors {
+            for (difference, error) in differences.iter_mut().zip(errors) {
+                *difference += error.in_units(self.unit);
+            }
+        }
+        differences
     }
 
     /// The differences in units, for a width of at most 126.
     fn wide(&self) -> [i128; N] {
-        std::array::from_fn(|i| {
-            self.rounded[i].in_wide_units(self.unit) + self.errors[i].in_wide_units(self.unit)
-        })
+        let mut differences = self.rounded.map(|part| part.in_wide_units(self.unit));
+        if let Some(errors) = &self.errors {
+            for (difference, error) in differences.iter_mut().zip(errors) {
+                *difference += error.in_wide_units(self.unit);
+            }
+        }
+        differences
     }
+}
+
+#[inline(always)]
+fn least_unit(parts: &[Dyadic]) -> i32 {
+    parts.iter().fold(Dyadic::ZERO.unit, |unit, part| unit.min(part.unit))
+}
+
+#[inline(always)]
+fn greatest_top(parts: &[Dyadic]) -> i32 {
+    parts.iter().fold(Dyadic::ZERO.top, |top, part| top.max(part.top))
 }
 
 /// A float as an odd integer times a power of two.
@@ -148,21 +165,24 @@ impl Dyadic {
     const GREATEST_TOP: i32 = 1024 + 1074;
 
     /// The float's odd part and exponent; infinities and NaN get a `top` above the greatest.
+    ///
+    /// Without branches: whether a difference on a grid is zero, nobody can predict.
     #[inline(always)]
     fn of(value: f64) -> Self {
-        if value == 0.0 {
-            return Self::ZERO;
-        }
         let bits = value.to_bits();
         let exponent = ((bits >> 52) & 0x7ff) as i32;
-        let fraction = (bits & ((1 << 52) - 1)) as i64;
         let is_normal = exponent != 0;
-        let significand = fraction | (i64::from(is_normal) << 52);
-        let zeros = significand.trailing_zeros();
+        let significand = (bits & ((1 << 52) - 1)) | (u64::from(is_normal) << 52);
+        let zeros = significand.trailing_zeros() & 63;
+        let magnitude = (significand >> zeros) as i64;
+        let sign = bits as i64 >> 63;
         let unit = exponent - i32::from(is_normal);
-        let magnitude = significand >> zeros;
-        let odd = if value < 0.0 { -magnitude } else { magnitude };
-        Self { odd, unit: unit + zeros as i32, top: unit + 53 }
+        let is_zero = significand == 0;
+        Self {
+            odd: (magnitude ^ sign) - sign,
+            unit: if is_zero { Self::ZERO.unit } else { unit + zeros as i32 },
+            top: if is_zero { Self::ZERO.top } else { unit + 53 },
+        }
     }
 
     /// The value in units of 2^unit; the caller knows that it is a multiple and fits.
