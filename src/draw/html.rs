@@ -181,7 +181,7 @@ fn push(out: &mut String, id: &str, bytes: Vec<u8>) {
     if bytes.is_empty() {
         return;
     }
-    let _ = write!(out, "<script type=\"text/plain\" id=\"{id}\">");
+    let _ = write!(out, "<script type=\"text/plain\" id=\"data-{id}\">");
     BASE64_STANDARD.encode_string(&bytes, out);
     out.push_str("</script>\n");
 }

@@ -52,16 +52,28 @@ function orbit(dx, dy) {
   turn(2, 1, -dy * 0.008);
 }
 
+/** Turns the mesh so that a triangle seen from behind or edge-on faces the eye. */
+function face([a, b, c]) {
+  const u = b.map((x, k) => x - a[k]), v = c.map((x, k) => x - a[k]);
+  const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+  const unit = (p) => p.map((x) => x / Math.hypot(...p));
+  const n = unit(cross(u, v));
+  if (!n.every(Number.isFinite) || rotate(n)[2] > 0.4) return;
+  // The mesh's z axis stays upright, unless the triangle looks along it.
+  const right = unit(cross(Math.abs(n[2]) < 0.98 ? [0, 0, 1] : [0, 1, 0], n));
+  camera.rotation = [...right, ...cross(n, right), ...n];
+}
+
 /** Half extents of the mesh in its unit, as seen from the front. */
 function halfExtents() {
-  const f = points.frame, low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
   for (let v = 0; v < points.n; v++)
     for (let k = 0; k < 2; k++) {
       const x = points.unit[3 * v + k];
       if (x < low[k]) low[k] = x;
       if (x > high[k]) high[k] = x;
     }
-  return f && low.map((l, k) => (high[k] > l ? (high[k] - l) / 2 : 0.02));
+  return low.map((l, k) => (high[k] > l ? (high[k] - l) / 2 : 0.02));
 }
 const extents = halfExtents();
 

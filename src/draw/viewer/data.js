@@ -4,7 +4,7 @@ const meta = JSON.parse(document.getElementById("meta").textContent);
 
 /** Bytes of a data element; absent ones are empty. Decoded in pieces to bound the memory. */
 function bytes(id) {
-  const element = document.getElementById(id);
+  const element = document.getElementById(`data-${id}`);
   if (!element) return new Uint8Array(0);
   const text = element.textContent.trim();
   const pad = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;

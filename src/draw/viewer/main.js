@@ -167,7 +167,7 @@ function paintLegend(colours) {
   for (let i = 0; i <= 4; i++) {
     c.textAlign = i === 0 ? "left" : i === 4 ? "right" : "center";
     const sign = i === 0 && summary.below ? "≤ " : i === 4 && summary.above ? "≥ " : "";
-    c.fillText(sign + short(Number(summary.at(i / 4).toPrecision(3))), (i * w) / 4, base + bar + 26);
+    c.fillText(sign + short(summary.at(i / 4), 3), (i * w) / 4, base + bar + 26);
   }
 }
 
@@ -190,13 +190,23 @@ function listWorst() {
     worst.splice(at < 0 ? worst.length : at, 0, { t, badness });
     worst.length = Math.min(worst.length, 10);
   }
+  $("worst-title").textContent = state.measure.better ? "Worst elements" : "Largest values";
   $("worst").replaceChildren();
   for (const { t, badness } of worst) item($("worst"), `triangle ${t}: ${short(sign * badness)}`, () => choose(t, true));
 }
 
+const cornersOf = (t) => [0, 1, 2].map((c) => unitOf(points, triangles[3 * t + c]));
+
+function faceTriangle(t) {
+  if (spatial && drawable[t]) face(cornersOf(t));
+}
+
 function choose(t, zoom) {
   state.chosen = t;
-  if (t >= 0 && zoom && drawable[t]) show([0, 1, 2].map((c) => unitOf(points, triangles[3 * t + c])), 6);
+  if (t >= 0 && zoom && drawable[t]) {
+    faceTriangle(t);
+    show(cornersOf(t), 6);
+  }
   showFacts(t);
   redraw();
 }
@@ -215,11 +225,11 @@ function showFacts(t) {
   if (numbers.length) row("number in the file", numbers[t]);
   if (!drawable[t]) row("cannot be drawn", "bad index or coordinate");
   else {
-    const s = shapeOf(t);
-    row("R/(2r)", short(s.ratio));
-    row("angles [°]", s.angles.map(short).join("  "));
-    row("edges", [2, 0, 1].map((i) => short(s.sides[i])).join("  "));
-    row("area", short(s.area) + (s.area < 0 ? " (clockwise)" : ""));
+    scale(t);
+    row("R/(2r)", short(ratio()));
+    row("angles [°]", [0, 1, 2].map((i) => short(angle(i), 4)).join("  "));
+    row("edges", [2, 0, 1].map((i) => short(length(i), 4)).join("  "));
+    row("area", short(area()) + (area() < 0 ? " (clockwise)" : ""));
   }
   for (let c = 0; c < 3; c++) {
     const v = triangles[3 * t + c];
@@ -235,9 +245,12 @@ function chooseFinding(i) {
   state.finding = i;
   $("marks").checked = true;
   [...$("findings").children].forEach((li, k) => li.classList.toggle("chosen", k === i));
-  show(placesOf(meta.highlights[i]), 5);
   const first = meta.highlights[i].triangles[0];
-  if (first !== undefined && first < count) showFacts(first);
+  if (first < count) {
+    faceTriangle(first);
+    showFacts(first);
+  }
+  show(placesOf(meta.highlights[i]), 5);
   redraw();
 }
 

@@ -1,28 +1,40 @@
 // Quality measures of triangles, and how their values become shades.
 
-/** Sides (opposite to the corners), area and angles of a triangle, in the unit of the file. */
-function shapeOf(t) {
-  const p = [0, 1, 2].map((c) => [0, 1, 2].map((k) => points.coordinate(triangles[3 * t + c], k)));
-  const side = (a, b) => [0, 1, 2].map((k) => p[b][k] - p[a][k]);
-  const vectors = [side(1, 2), side(2, 0), side(0, 1)];
+/** Side vectors of a triangle, side i opposite to corner i, over `size`, their largest coordinate:
+ *  scaled so, squares neither overflow nor underflow. One object for all, as there are millions. */
+const scaled = { size: 0, side: new Float64Array(9), length: new Float64Array(3), cross: 0, twice: 0 };
+
+function scale(t) {
+  const s = scaled.side;
   let size = 0;
-  for (const v of vectors) for (const x of v) size = Math.max(size, Math.abs(x));
-  if (!(size > 0)) return { sides: [0, 0, 0], area: 0, ratio: size === 0 ? Infinity : NaN, angles: [NaN, NaN, NaN], size };
-  // Scaled by the largest difference, so that squares neither overflow nor underflow.
-  const [a, b, c] = vectors.map((v) => v.map((x) => x / size));
-  const norm = (v) => Math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  const dot = (u, v) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-  const cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
-  const twice = norm(cross), l = [a, b, c].map(norm);
-  const angle = (u, v) => (Math.atan2(twice, -dot(u, v)) * 180) / Math.PI;
-  const sign = !spatial && cross[2] < 0 ? -1 : 1;
-  return {
-    sides: l.map((x) => x * size), size,
-    area: (sign * twice * size * size) / 2,
-    ratio: (l[0] * l[1] * l[2] * (l[0] + l[1] + l[2])) / (4 * twice * twice),
-    angles: [angle(b, c), angle(c, a), angle(a, b)],
-  };
+  for (let i = 0; i < 3; i++) {
+    const from = triangles[3 * t + (i + 1) % 3], to = triangles[3 * t + (i + 2) % 3];
+    for (let k = 0; k < 3; k++) {
+      const d = points.coordinate(to, k) - points.coordinate(from, k);
+      s[3 * i + k] = d;
+      if (!(Math.abs(d) <= size)) size = Math.abs(d);
+    }
+  }
+  scaled.size = size;
+  if (size > 0) for (let i = 0; i < 9; i++) s[i] /= size;
+  for (let i = 0; i < 3; i++) scaled.length[i] = Math.sqrt(dot(i, i));
+  const x = s[4] * s[8] - s[5] * s[7], y = s[5] * s[6] - s[3] * s[8], z = s[3] * s[7] - s[4] * s[6];
+  scaled.cross = z;
+  scaled.twice = Math.sqrt(x * x + y * y + z * z);
 }
+const dot = (i, j) => {
+  const s = scaled.side;
+  return s[3 * i] * s[3 * j] + s[3 * i + 1] * s[3 * j + 1] + s[3 * i + 2] * s[3 * j + 2];
+};
+
+// Measures of the triangle scaled last.
+const ratio = () => {
+  const [a, b, c] = scaled.length;
+  return scaled.size === 0 ? Infinity : (a * b * c * (a + b + c)) / (4 * scaled.twice * scaled.twice);
+};
+const area = () => ((!spatial && scaled.cross < 0 ? -1 : 1) * scaled.twice * scaled.size * scaled.size) / 2;
+const angle = (i) => (scaled.size > 0 ? (Math.atan2(scaled.twice, -dot((i + 1) % 3, (i + 2) % 3)) * 180) / Math.PI : NaN);
+const length = (i) => scaled.length[i] * scaled.size;
 
 /** Largest ratio of the area to that of a neighbour, or its inverse. */
 function neighbourRatios() {
@@ -44,19 +56,22 @@ function neighbourRatios() {
 
 const shaped = (of) => () => {
   const out = new Float64Array(count);
-  for (let t = 0; t < count; t++) out[t] = drawable[t] ? of(shapeOf(t)) : NaN;
+  for (let t = 0; t < count; t++) {
+    if (drawable[t]) scale(t);
+    out[t] = drawable[t] ? of() : NaN;
+  }
   return out;
 };
 
 /** Every measure: better is "low", "high" or "" (neither); log ones are binned by logarithm. */
 const measures = [
-  { id: "radius_ratio", name: "R/(2r)", better: "low", range: [1, 1.6], make: shaped((s) => s.ratio) },
-  { id: "min_angle", name: "smallest angle [°]", better: "high", range: [0, 60], make: shaped((s) => Math.min(...s.angles)) },
-  { id: "max_angle", name: "largest angle [°]", better: "low", range: [60, 180], make: shaped((s) => Math.max(...s.angles)) },
-  { id: "edge_ratio", name: "longest / shortest edge", better: "low", range: [1, 3], make: shaped((s) => Math.max(...s.sides) / Math.min(...s.sides)) },
-  { id: "area", name: "area", better: "", log: true, make: shaped((s) => s.area) },
+  { id: "radius_ratio", name: "R/(2r)", better: "low", range: [1, 1.6], make: shaped(ratio) },
+  { id: "min_angle", name: "smallest angle [°]", better: "high", range: [0, 60], make: shaped(() => Math.min(angle(0), angle(1), angle(2))) },
+  { id: "max_angle", name: "largest angle [°]", better: "low", range: [60, 180], make: shaped(() => Math.max(angle(0), angle(1), angle(2))) },
+  { id: "edge_ratio", name: "longest / shortest edge", better: "low", range: [1, 3], make: shaped(() => Math.max(length(0), length(1), length(2)) / Math.min(length(0), length(1), length(2))) },
+  { id: "area", name: "area", better: "", log: true, make: shaped(area) },
   { id: "area_ratio", name: "area ratio to neighbours", better: "low", range: [1, 4], make: neighbourRatios },
-  { id: "edge_length", name: "mean edge length", better: "", log: true, make: shaped((s) => (s.sides[0] + s.sides[1] + s.sides[2]) / 3) },
+  { id: "edge_length", name: "mean edge length", better: "", log: true, make: shaped(() => (length(0) + length(1) + length(2)) / 3) },
   { id: "order", name: "order in the file", better: "", make: () => Float64Array.from({ length: count }, (_, t) => t) },
 ];
 meta.layers.forEach((layer, i) => measures.splice(i, 0, {
@@ -83,15 +98,15 @@ function summarise(measure, range) {
   const ends = [finite[0], finite[finite.length - 1]].sort((a, b) => a - b);
   const own = measure.range || (finite.length ? ends : [0, 1]);
   const [low, high] = range || own;
-  const scale = measure.log && low > 0 ? Math.log : (x) => x;
-  const [from, to] = [scale(low), scale(high)];
+  const log = measure.log && low > 0, along = log ? Math.log : (x) => x;
+  const [from, to] = [along(low), along(high)];
   const fraction = (v) => {
     if (!(to > from)) return v > high ? 1 : 0;
-    return Math.min(1, Math.max(0, v <= 0 && scale === Math.log ? 0 : (scale(v) - from) / (to - from)));
+    return Math.min(1, Math.max(0, v <= 0 && log ? 0 : (along(v) - from) / (to - from)));
   };
   const bars = new Uint32Array(70);
   for (const v of values) bars[Math.min(69, Math.floor(fraction(v) * 70))]++;
-  const at = (t) => (scale === Math.log ? Math.exp(from + t * (to - from)) : low + t * (high - low));
+  const at = (t) => (log ? Math.exp(from + t * (to - from)) : low + t * (high - low));
   return {
     low, high, own, mean, n, fraction, bars, at,
     percentile: values[Math.max(0, Math.ceil(0.99 * n) - 1)], worst: values[n - 1],
@@ -125,11 +140,11 @@ function paletteColours(stops) {
   return out;
 }
 
-/** A number for people, about five digits. */
-function short(x) {
+/** A number for people, to so many digits. */
+function short(x, digits = 5) {
   if (x === undefined || Number.isNaN(x)) return "no value";
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "-∞";
   const size = Math.abs(x);
-  if (x !== 0 && (size < 1e-3 || size >= 1e6)) return x.toExponential(3);
-  return String(Number(x.toPrecision(5)));
+  if (x === 0 || (size >= 1e-3 && size < 1e6)) return String(Number(x.toPrecision(digits)));
+  return x.toExponential(digits - 1).replace(/\.?0*e\+?/, "e");
 }
