@@ -5,7 +5,7 @@
 //! ```
 
 use std::path::{Path, PathBuf};
-use trigrade::draw::{self, Highlight, Layer, Options, Palette, Panel, View};
+use trigrade::draw::{self, Background, Highlight, Layer, Options, Palette, Panel, View, Viewer};
 use trigrade::mesh::{MarkedEdge, MeshData};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -13,7 +13,64 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(&directory)?;
     side_by_side(&directory)?;
     findings(&directory)?;
-    palettes(&directory)
+    palettes(&directory)?;
+    viewers(&directory)
+}
+
+fn viewers(directory: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let (mesh, coarse) = (ring(96, 40, 2.0), ring(12, 3, 1.0));
+    let spacing: Vec<f64> = coarse.points.iter().map(|p| 0.3 * p[0].hypot(p[1])).collect();
+    let background = Some(Background { mesh: &coarse, spacing: &spacing });
+    let highlights = [
+        Highlight {
+            label: "C7: triangle 100 is a needle <b>".into(),
+            triangles: vec![100, 101],
+            ..Highlight::default()
+        },
+        Highlight {
+            label: "C9: vertex 5 is used twice".into(),
+            vertices: vec![5],
+            ..Highlight::default()
+        },
+        Highlight {
+            label: "C4: edge 960-961 is lost".into(),
+            edges: vec![[960, 961]],
+            ..Highlight::default()
+        },
+    ];
+    let layer = Layer::radius_ratio(&mesh);
+    let layers = [Layer { name: "my own values".into(), ..layer }];
+    let viewer = Viewer {
+        highlights: &highlights,
+        background,
+        layers: &layers,
+        ..Viewer::new("ring.msh", &mesh)
+    };
+    std::fs::write(directory.join("ring.html"), draw::html(&viewer)?)?;
+    let torus = torus(120, 60);
+    std::fs::write(directory.join("torus.html"), draw::html(&Viewer::new("torus", &torus))?)?;
+    Ok(())
+}
+
+/// A torus in space.
+fn torus(around: u32, through: u32) -> MeshData {
+    let mut mesh = MeshData::default();
+    let turn = |k: u32, n: u32| f64::from(k) / f64::from(n) * std::f64::consts::TAU;
+    for i in 0..around {
+        for j in 0..through {
+            let (u, v) = (turn(i, around), turn(j, through));
+            let r = 2.0 + 0.8 * v.cos();
+            mesh.points.push([r * u.cos(), r * u.sin(), 0.8 * v.sin()]);
+        }
+    }
+    for i in 0..around {
+        for j in 0..through {
+            let at = |i: u32, j: u32| (i % around) * through + j % through;
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
 }
 
 fn side_by_side(directory: &Path) -> Result<(), Box<dyn std::error::Error>> {

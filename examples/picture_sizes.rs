@@ -7,7 +7,7 @@
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use trigrade::draw::{self, Layer, Options, Panel};
+use trigrade::draw::{self, Layer, Options, Panel, Viewer};
 use trigrade::mesh::MeshData;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,8 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sizes: Vec<usize> = arguments.map(|a| a.parse()).collect::<Result<_, _>>()?;
     let sizes = if sizes.is_empty() { vec![10, 1_000, 10_000, 100_000] } else { sizes };
     println!(
-        "{:>10} {:>6} {:>9} {:>9} {:>9} {:>9}",
-        "triangles", "", "SVG s", "bytes", "PNG s", "bytes"
+        "{:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "triangles", "", "SVG s", "bytes", "PNG s", "bytes", "HTML s", "bytes"
     );
     for &triangles in &sizes {
         for graded in [false, true] {
@@ -45,11 +45,17 @@ fn measure(
     let png = draw::png(&panels, &Options::default())?;
     let png_seconds = start.elapsed().as_secs_f64();
     std::fs::write(directory.join(format!("{name}-{n}.png")), &png)?;
-    println!(
-        "{n:>10} {name:>6} {svg_seconds:>9.3} {:>9} {png_seconds:>9.3} {:>9}",
-        svg.len(),
-        png.len()
-    );
+    let start = Instant::now();
+    let html = draw::html(&Viewer::new(&format!("{name}-{n}"), mesh))?;
+    let html_seconds = start.elapsed().as_secs_f64();
+    std::fs::write(directory.join(format!("{name}-{n}.html")), &html)?;
+    print!("{n:>10} {name:>6}");
+    for (seconds, bytes) in
+        [(svg_seconds, svg.len()), (png_seconds, png.len()), (html_seconds, html.len())]
+    {
+        print!(" {seconds:>9.3} {bytes:>9}");
+    }
+    println!();
     Ok(())
 }
 

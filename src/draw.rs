@@ -12,9 +12,11 @@
 //! used, and every number is printed in a fixed form.
 
 use crate::mesh::MeshData;
+use serde::Serialize;
 
 mod edges;
 mod frame;
+mod html;
 mod layer;
 mod legend;
 mod page;
@@ -26,8 +28,9 @@ mod png;
 mod text;
 
 pub use frame::{ParseViewError, View};
+pub use html::{Background, Viewer, html};
 pub use layer::{Better, Layer};
-pub use palette::Palette;
+pub use palette::{Palette, ParsePaletteError};
 
 /// One mesh in a picture.
 #[derive(Clone, Debug)]
@@ -79,7 +82,7 @@ impl<'a> Panel<'a> {
 }
 
 /// A place of a mesh that a picture points at, for instance a finding of the checker.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Highlight {
     /// What is the matter, in a few words; listed beside the picture under the mark's number.
     pub label: String,
@@ -143,6 +146,14 @@ pub enum DrawError {
         values: usize,
         /// How many triangles the mesh has.
         triangles: usize,
+    },
+    /// The size field has a different number of values than the background mesh has points.
+    #[error("the size field has {values} values for {points} points of the background mesh")]
+    SpacingCount {
+        /// How many values it has.
+        values: usize,
+        /// How many points the mesh has.
+        points: usize,
     },
     /// The rectangle to draw is empty or not finite.
     #[error("panel {panel}: the view {view} is empty; give x0,y0,x1,y1 with x0 < x1 and y0 < y1")]
@@ -211,23 +222,21 @@ fn check_input(panels: &[Panel<'_>], options: &Options) -> Result<(), DrawError>
 }
 
 fn check_panel(index: usize, panel: &Panel<'_>) -> Result<(), DrawError> {
-    let triangles = panel.mesh.triangles.len();
-    if let Some(layer) = panel.layer
-        && layer.values.len() != triangles
-    {
-        return Err(DrawError::ValueCount {
-            panel: index,
-            layer: layer.name.clone(),
-            values: layer.values.len(),
-            triangles,
-        });
-    }
+    panel.layer.map_or(Ok(()), |layer| check_layer(index, layer, panel.mesh))?;
     for view in [panel.view, panel.outline].into_iter().flatten() {
         if !view.is_proper() {
             return Err(DrawError::EmptyView { panel: index, view });
         }
     }
     Ok(())
+}
+
+fn check_layer(panel: usize, layer: &Layer, mesh: &MeshData) -> Result<(), DrawError> {
+    let (values, triangles) = (layer.values.len(), mesh.triangles.len());
+    if values == triangles {
+        return Ok(());
+    }
+    Err(DrawError::ValueCount { panel, layer: layer.name.clone(), values, triangles })
 }
 
 #[cfg(test)]

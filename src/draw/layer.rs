@@ -1,9 +1,11 @@
 //! Values that colour the triangles of a mesh.
 
 use crate::mesh::MeshData;
+use serde::Serialize;
 
 /// Which end of a measure is the good one; the good end is drawn light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Better {
     /// Small values are good, as for R/(2r).
     Low,

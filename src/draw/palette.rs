@@ -33,6 +33,20 @@ const CIVIDIS: [u32; 10] = [
 const GREY: [u32; 2] = [0xf4_f4f4, 0x22_2222];
 
 impl Palette {
+    /// Every palette.
+    pub const ALL: [Self; 4] = [Self::YlGnBu, Self::Viridis, Self::Cividis, Self::Grey];
+
+    /// What it is called.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::YlGnBu => "YlGnBu",
+            Self::Viridis => "viridis",
+            Self::Cividis => "cividis",
+            Self::Grey => "grey",
+        }
+    }
+
     /// The colour at `t` in [0, 1], 0 the light end, as `0xRRGGBB`; `t` outside is clamped.
     #[must_use]
     pub fn colour(self, t: f64) -> u32 {
@@ -43,7 +57,8 @@ impl Palette {
         mix(stops[low], stops[low + 1], at - low as f64)
     }
 
-    fn stops(self) -> &'static [u32] {
+    /// The colours it blends, as `0xRRGGBB`, evenly spaced from the light end.
+    pub(super) fn stops(self) -> &'static [u32] {
         match self {
             Self::YlGnBu => &YL_GN_BU,
             Self::Viridis => &VIRIDIS,
@@ -62,11 +77,28 @@ pub(super) fn mix(from: u32, to: u32, t: f64) -> u32 {
     channel(16) | channel(8) | channel(0)
 }
 
+impl std::str::FromStr for Palette {
+    type Err = ParsePaletteError;
+
+    /// Reads a palette's name, in any case.
+    fn from_str(text: &str) -> Result<Self, ParsePaletteError> {
+        Self::ALL
+            .into_iter()
+            .find(|p| p.name().eq_ignore_ascii_case(text))
+            .ok_or_else(|| ParsePaletteError { text: text.to_owned() })
+    }
+}
+
+/// Why a text names no [`Palette`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no palette '{text}'; there are YlGnBu, viridis, cividis and grey")]
+pub struct ParsePaletteError {
+    text: String,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const ALL: [Palette; 4] = [Palette::YlGnBu, Palette::Viridis, Palette::Cividis, Palette::Grey];
 
     /// CIE L* of an sRGB colour.
     fn lightness(colour: u32) -> f64 {
@@ -82,7 +114,7 @@ mod tests {
     // spec: G3
     #[test]
     fn lightness_falls_strictly_along_every_palette() {
-        for palette in ALL {
+        for palette in Palette::ALL {
             let levels: Vec<f64> =
                 (0..=64).map(|i| lightness(palette.colour(f64::from(i) / 64.0))).collect();
             assert!(levels.windows(2).all(|w| w[1] < w[0]), "{palette:?}: {levels:?}");
@@ -92,12 +124,22 @@ mod tests {
 
     #[test]
     fn ends_are_the_first_and_last_stop_and_outside_is_clamped() {
-        for palette in ALL {
+        for palette in Palette::ALL {
             let stops = palette.stops();
             assert_eq!(palette.colour(0.0), stops[0]);
             assert_eq!(palette.colour(1.0), stops[stops.len() - 1]);
             assert_eq!(palette.colour(-3.0), stops[0]);
             assert_eq!(palette.colour(f64::INFINITY), stops[stops.len() - 1]);
         }
+    }
+
+    #[test]
+    fn palettes_are_read_by_name_and_unknown_ones_are_named() {
+        for palette in Palette::ALL {
+            assert_eq!(palette.name().to_uppercase().parse(), Ok(palette));
+        }
+        let error = "jet".parse::<Palette>().expect_err("no such palette").to_string();
+        let named = Palette::ALL.iter().all(|p| error.contains(p.name()));
+        assert!(error.contains("'jet'") && named, "{error}");
     }
 }
