@@ -13,11 +13,13 @@ mod msh22;
 mod msh41;
 mod node_ele;
 mod off;
+mod scalar;
 mod scan;
 #[cfg(test)]
 mod tests;
 mod text;
 mod view;
+mod vtk_cell;
 mod vtu;
 
 pub use error::{At, ReadError, ReadFault, WriteError};
@@ -215,8 +217,12 @@ pub struct WriteOptions {
 pub type Reader = fn(&[u8], &ReadOptions) -> Result<MeshData, ReadError>;
 
 /// The reader of every form.
-pub const READERS: [(MeshForm, Reader); 3] =
-    [(MeshForm::Msh, msh::read), (MeshForm::NodeEle, node_ele::read), (MeshForm::Off, off::read)];
+pub const READERS: [(MeshForm, Reader); MeshForm::ALL.len()] = [
+    (MeshForm::Msh, msh::read),
+    (MeshForm::NodeEle, node_ele::read),
+    (MeshForm::Off, off::read),
+    (MeshForm::Vtu, vtu::read),
+];
 
 /// Reads a mesh file: nothing repaired, nothing dropped.
 ///

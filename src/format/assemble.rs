@@ -13,6 +13,8 @@ pub(crate) enum Numbering {
     Base(i64),
     /// Entry `number - first` of the table is the index, or [`NO_POINT`].
     Table { first: i64, indices: Vec<u32> },
+    /// Number i is the point with index first + i, for i < count.
+    Window { first: u32, count: u32 },
     /// Numbers with large gaps: `(number, index)` by rising number.
     Sorted(Vec<(i64, u32)>),
 }
@@ -61,6 +63,10 @@ impl Numbering {
                 .checked_sub(*base)
                 .and_then(|index| u32::try_from(index).ok())
                 .unwrap_or(NO_POINT),
+            Self::Window { first, count } => match u32::try_from(number) {
+                Ok(index) if index < *count => first + index,
+                _ => NO_POINT,
+            },
             Self::Table { first, indices } => number
                 .checked_sub(*first)
                 .and_then(|offset| usize::try_from(offset).ok())
@@ -157,6 +163,11 @@ impl Assembler {
         self.numbering = Numbering::of(&self.numbers)
             .map_err(|number| scanner.fail(ReadFault::Duplicate { number }))?;
         Ok(())
+    }
+
+    /// From here on cells number `count` points from 0, the first of which has index `first`.
+    pub(crate) fn window(&mut self, first: usize, count: usize) {
+        self.numbering = Numbering::Window { first: first as u32, count: count as u32 };
     }
 
     /// Adds a triangle.

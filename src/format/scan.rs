@@ -50,6 +50,12 @@ impl<'a> Scanner<'a> {
         Self { bytes, at, line: 1, comment: None, binary: false, digits: 0 }
     }
 
+    /// A cursor at offset `start`, with the line it is on.
+    pub(crate) fn within(bytes: &'a [u8], start: usize) -> Self {
+        let lines = bytes[..start].iter().filter(|&&byte| byte == b'\n').count() as u64;
+        Self { at: start, line: lines + 1, ..Self::new(bytes) }
+    }
+
     /// The same cursor; `byte` starts a comment that ends with its line.
     pub(crate) fn with_comments(self, byte: u8) -> Self {
         Self { comment: Some(byte), ..self }
@@ -63,11 +69,6 @@ impl<'a> Scanner<'a> {
     /// Line of the next byte, from 1; `None` once the file turned out to be binary.
     pub(crate) fn line(&self) -> Option<u64> {
         (!self.binary).then_some(self.line)
-    }
-
-    /// Offset of the next byte.
-    pub(crate) fn offset(&self) -> usize {
-        self.at
     }
 
     /// The bytes not yet read.
