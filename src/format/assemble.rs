@@ -109,6 +109,7 @@ pub(crate) struct Assembler {
     edge_cells: Vec<Cell>,
     large_marker: Option<Cell>,
     others: BTreeMap<i64, OtherCells>,
+    kinds: BTreeMap<String, i64>,
     split_quads: bool,
 }
 
@@ -124,6 +125,7 @@ impl Assembler {
             edge_cells: Vec::new(),
             large_marker: None,
             others: BTreeMap::new(),
+            kinds: BTreeMap::new(),
             split_quads,
         }
     }
@@ -254,6 +256,13 @@ impl Assembler {
     pub(crate) fn other(&mut self, code: i64, count: u64, kind: impl FnOnce() -> String) {
         let entry = self.others.entry(code);
         entry.or_insert_with(|| OtherCells { kind: kind(), count: 0 }).count += count;
+    }
+
+    /// Counts a cell whose kind is only a name; kinds are ordered by first occurrence.
+    pub(crate) fn other_named(&mut self, kind: String) {
+        let next = self.kinds.len() as i64;
+        let code = *self.kinds.entry(kind.clone()).or_insert(next);
+        self.other(code, 1, || kind);
     }
 
     /// The mesh, with references beyond the last point reported.

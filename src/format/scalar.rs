@@ -46,6 +46,65 @@ impl Scalar {
         })
     }
 
+    /// The type that a legacy VTK file calls `name`, in lower case.
+    pub(crate) fn from_vtk_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "char" | "vtktypeint8" => Self::I8,
+            "unsigned_char" | "vtktypeuint8" => Self::U8,
+            "short" | "vtktypeint16" => Self::I16,
+            "unsigned_short" | "vtktypeuint16" => Self::U16,
+            // A vtkIdType is written as an int whatever its size in memory.
+            "int" | "vtkidtype" | "vtktypeint32" => Self::I32,
+            "unsigned_int" | "vtktypeuint32" => Self::U32,
+            "long" | "vtktypeint64" => Self::I64,
+            "unsigned_long" | "vtktypeuint64" => Self::U64,
+            "float" => Self::F32,
+            "double" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// The type that a PLY file calls `name`.
+    pub(crate) fn from_ply_name(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"int64" => Self::I64,
+            b"uint64" => Self::U64,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// The number that the bytes of one hold, as a double.
+    #[inline]
+    pub(crate) fn float(self, bytes: &[u8], endian: Endian) -> f64 {
+        match self {
+            Self::F32 => f64::from(f32::from_bits(raw(bytes, endian) as u32)),
+            Self::F64 => f64::from_bits(raw(bytes, endian)),
+            _ => self.integer(bytes, endian) as f64,
+        }
+    }
+
+    /// The number that the bytes of one hold, as [`Self::integers`] does it.
+    #[inline]
+    pub(crate) fn integer(self, bytes: &[u8], endian: Endian) -> i64 {
+        let bits = raw(bytes, endian);
+        match self {
+            Self::I8 => i64::from(bits as i8),
+            Self::I16 => i64::from(bits as i16),
+            Self::I32 => i64::from(bits as i32),
+            Self::I64 => bits as i64,
+            Self::U8 | Self::U16 | Self::U32 | Self::U64 => i64::try_from(bits).unwrap_or(i64::MAX),
+            Self::F32 | Self::F64 => self.float(bytes, endian) as i64,
+        }
+    }
+
     /// Bytes of a number.
     pub(crate) const fn size(self) -> usize {
         match self {
@@ -86,5 +145,15 @@ impl Scalar {
             Self::F32 => convert!(f32, bytes, endian, |value| value as i64),
             Self::F64 => convert!(f64, bytes, endian, |value| value as i64),
         }
+    }
+}
+
+/// The bits of a number of at most eight bytes.
+#[inline]
+fn raw(bytes: &[u8], endian: Endian) -> u64 {
+    let join = |bits: u64, &byte: &u8| bits << 8 | u64::from(byte);
+    match endian {
+        Endian::Little => bytes.iter().rev().fold(0, join),
+        Endian::Big => bytes.iter().fold(0, join),
     }
 }

@@ -44,6 +44,46 @@ fn kind(code: i64) -> String {
     }
 }
 
+/// Names of the cell arrays that say the region of a triangle, the likeliest first.
+pub(crate) const REGION_ARRAYS: [&[u8]; 4] =
+    [b"region", b"gmsh:physical", b"medit:ref", b"CellEntityIds"];
+/// Names of the cell arrays that say the marker of an edge, the likeliest first.
+pub(crate) const MARKER_ARRAYS: [&[u8]; 4] =
+    [b"marker", b"gmsh:physical", b"medit:ref", b"CellEntityIds"];
+
+/// The cells of a piece.
+#[derive(Debug, Default)]
+pub(crate) struct Cells {
+    /// Corners of all cells, one cell after the other.
+    pub(crate) connectivity: Vec<i64>,
+    /// Where the corners of each cell end.
+    pub(crate) ends: Vec<i64>,
+    /// VTK's code of each cell.
+    pub(crate) types: Vec<i64>,
+    /// Region of each cell; empty for none.
+    pub(crate) regions: Vec<i64>,
+    /// Marker of each cell; empty for none.
+    pub(crate) markers: Vec<i64>,
+}
+
+impl Cells {
+    /// Hands all cells over, numbered from `first`: `Err` with what is expected where the arrays
+    /// contradict each other.
+    pub(crate) fn assemble(&self, mesh: &mut Assembler, first: i64) -> Result<(), &'static str> {
+        let mut start = 0;
+        for (index, (&end, &code)) in self.ends.iter().zip(&self.types).enumerate() {
+            let range = start..usize::try_from(end).unwrap_or(0);
+            let corners =
+                self.connectivity.get(range).ok_or("offsets that rise from cell to cell")?;
+            start += corners.len();
+            let source = if code == LINE { &self.markers } else { &self.regions };
+            let marker = source.get(index).copied().unwrap_or(0);
+            cell(mesh, code, corners, Cell { number: first + index as i64, marker, line: None })?;
+        }
+        Ok(())
+    }
+}
+
 /// Hands a cell over: `Err` with what is expected when its type and its number of corners
 /// contradict each other.
 pub(crate) fn cell(

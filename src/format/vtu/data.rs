@@ -200,13 +200,17 @@ impl<'a> Decoder<'a> {
 
     /// The number of bytes that stands before uncompressed data.
     fn check_length(
-        &self,
+        &mut self,
         head: &[u8],
         array: Array,
         (what, count): (&'static str, u64),
     ) -> Fallible<usize> {
         let length = self.numbers(head)[0];
         self.check_total(length as u64, array, (what, count))?;
+        // Many arrays may share one stretch of appended data.
+        let limit = self.left;
+        let left = limit.checked_sub(length as u64).ok_or(ReadFault::Expansion { limit });
+        self.left = left?;
         usize::try_from(length).map_err(|_| truncated())
     }
 

@@ -4,13 +4,14 @@
 //! being read (SPEC X26).
 
 use crate::format::ReadOptions;
-use crate::format::assemble::{Assembler, Cell};
+use crate::format::assemble::Assembler;
 use crate::format::error::{At, ReadError, ReadFault};
 use crate::format::scalar::Scalar;
 use crate::format::scan::{Endian, Scanner, excerpt};
-use crate::format::vtk_cell;
+use crate::format::vtk_cell::{self, Cells};
 use crate::format::vtu::data::{Array, Coding, Decoder, Source, expansion_limit, place};
 use crate::mesh::MeshData;
+use memchr::{memchr, memmem};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -33,10 +34,6 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
     data.decimal_digits = decoder.digits;
     Ok(data)
 }
-
-/// Cell arrays that say the region of a triangle, and those that say the marker of an edge.
-const REGION_ARRAYS: [&[u8]; 3] = [b"region", b"gmsh:physical", b"medit:ref"];
-const MARKER_ARRAYS: [&[u8]; 3] = [b"marker", b"gmsh:physical", b"medit:ref"];
 
 fn read_piece(
     decoder: &mut Decoder,
@@ -70,29 +67,21 @@ fn read_piece(
     if cells == 0 {
         return Ok(());
     }
-    let array = piece.array(b"offsets").ok_or_else(|| missing("the array `offsets` of cells"))?;
-    let offsets = decoder.integers(array, "offsets", cells)?;
-    let corners = u64::try_from(offsets.last().copied().unwrap_or(0));
+    let array = |name: &str| {
+        let array = piece.array(name.as_bytes());
+        array.ok_or_else(|| missing(&format!("the array `{name}` of cells")))
+    };
+    let ends = decoder.integers(array("offsets")?, "offsets", cells)?;
+    let corners = u64::try_from(ends.last().copied().unwrap_or(0));
     let corners = corners.map_err(|_| missing("offsets that are not negative"))?;
-    let array = piece.array(b"types").ok_or_else(|| missing("the array `types` of cells"))?;
-    let types = decoder.integers(array, "types", cells)?;
-    let array = piece.array(b"connectivity").ok_or_else(|| missing("the array `connectivity`"))?;
-    let connectivity = decoder.integers(array, "corners of cells", corners)?;
-    let mut markers = |names: &[&[u8]]| piece.markers(decoder, names);
-    let (regions, markers) = (markers(&REGION_ARRAYS)?, markers(&MARKER_ARRAYS)?);
-    let mut start = 0;
-    for (index, (&end, &code)) in offsets.iter().zip(&types).enumerate() {
-        let range = start..usize::try_from(end).unwrap_or(0);
-        let Some(corners) = connectivity.get(range) else {
-            return Err(missing("offsets that rise from cell to cell"));
-        };
-        start += corners.len();
-        let source = if code == vtk_cell::LINE { &markers } else { &regions };
-        let marker = source.get(index).copied().unwrap_or(0);
-        let cell = Cell { number: first_cell + index as i64, marker, line: None };
-        vtk_cell::cell(mesh, code, corners, cell).map_err(missing)?;
-    }
-    Ok(())
+    let cells = Cells {
+        connectivity: decoder.integers(array("connectivity")?, "corners of cells", corners)?,
+        ends,
+        types: decoder.integers(array("types")?, "types", cells)?,
+        regions: piece.markers(decoder, &vtk_cell::REGION_ARRAYS)?,
+        markers: piece.markers(decoder, &vtk_cell::MARKER_ARRAYS)?,
+    };
+    cells.assemble(mesh, first_cell).map_err(missing)
 }
 
 /// A `Piece` element.
@@ -289,7 +278,7 @@ impl<'a> OutlineReader<'a> {
             })?;
             // VTK puts `InformationKey` elements after the values.
             let content = &self.bytes[start..span.end as usize];
-            end = start + content.iter().position(|&b| b == b'<').unwrap_or(content.len());
+            end = start + memchr(b'<', content).unwrap_or(content.len());
         }
         if self.section == Section::Other {
             return Ok(());
@@ -350,9 +339,8 @@ impl<'a> OutlineReader<'a> {
             let at = place(self.bytes, self.bytes.len());
             return Err(ReadError { file: "", at, fault: ReadFault::Truncated { expected } });
         };
-        let tag = b"</AppendedData>";
-        let data_end = self.bytes.windows(tag.len()).rposition(|window| window == tag);
         let (bytes, appended) = (self.bytes, self.appended);
+        let data_end = appended.and_then(|_| memmem::rfind(bytes, b"</AppendedData>"));
         for piece in &mut self.pieces {
             let arrays = piece.arrays.iter_mut().map(|entry| &mut entry.1);
             for array in arrays.chain(&mut piece.coordinates) {
