@@ -7,6 +7,7 @@
 //! checked against the bytes that follow before anything is allocated.
 
 pub mod airfoil;
+mod abaqus;
 mod assemble;
 mod domain_builder;
 pub mod domain_file;
@@ -14,17 +15,28 @@ pub mod domain_json;
 mod domain_json_plain;
 mod error;
 pub mod geojson;
+mod fort14;
+mod medit;
 mod msh;
 mod msh22;
 mod msh41;
+mod netgen_vol;
 mod node_ele;
+mod obj;
 mod off;
 pub mod poly;
+mod ply;
+mod scalar;
 mod scan;
+mod sms_2dm;
+mod stl;
+mod su2;
 #[cfg(test)]
 mod tests;
 mod text;
 mod view;
+mod vtk_cell;
+mod vtk_legacy;
 mod vtu;
 
 pub use error::{At, ReadError, ReadFault, WriteError};
@@ -46,6 +58,26 @@ pub enum MeshForm {
     Off,
     /// VTK XML unstructured grid.
     Vtu,
+    /// VTK legacy file, ASCII or binary.
+    VtkLegacy,
+    /// Medit `.mesh`, and `.meshb` to be read.
+    Medit,
+    /// SU2 native mesh.
+    Su2,
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY, ASCII or binary.
+    Ply,
+    /// STL, ASCII or binary.
+    Stl,
+    /// Netgen `.vol`; read only.
+    NetgenVol,
+    /// ADCIRC grid `fort.14`; read only.
+    Fort14,
+    /// SMS `.2dm`; read only.
+    Sms2dm,
+    /// Abaqus input file; read only.
+    Abaqus,
 }
 
 impl std::fmt::Display for MeshForm {
@@ -56,7 +88,22 @@ impl std::fmt::Display for MeshForm {
 
 impl MeshForm {
     /// Every form.
-    pub const ALL: [Self; 4] = [Self::Msh, Self::NodeEle, Self::Off, Self::Vtu];
+    pub const ALL: [Self; 14] = [
+        Self::Msh,
+        Self::NodeEle,
+        Self::Off,
+        Self::Vtu,
+        Self::VtkLegacy,
+        Self::Medit,
+        Self::Su2,
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::NetgenVol,
+        Self::Fort14,
+        Self::Sms2dm,
+        Self::Abaqus,
+    ];
 
     /// The form's name, as users know it.
     #[must_use]
@@ -66,6 +113,16 @@ impl MeshForm {
             Self::NodeEle => "Triangle .node/.ele",
             Self::Off => "OFF",
             Self::Vtu => "VTU",
+            Self::VtkLegacy => "VTK legacy",
+            Self::Medit => "Medit",
+            Self::Su2 => "SU2",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::NetgenVol => "Netgen .vol",
+            Self::Fort14 => "ADCIRC fort.14",
+            Self::Sms2dm => "SMS .2dm",
+            Self::Abaqus => "Abaqus .inp",
         }
     }
 
@@ -77,6 +134,16 @@ impl MeshForm {
             "ele" => Self::NodeEle,
             "off" => Self::Off,
             "vtu" => Self::Vtu,
+            "vtk" => Self::VtkLegacy,
+            "mesh" | "meshb" => Self::Medit,
+            "su2" => Self::Su2,
+            "obj" => Self::Obj,
+            "ply" => Self::Ply,
+            "stl" => Self::Stl,
+            "vol" => Self::NetgenVol,
+            "14" | "grd" => Self::Fort14,
+            "2dm" => Self::Sms2dm,
+            "inp" => Self::Abaqus,
             _ => return None,
         })
     }
@@ -87,29 +154,46 @@ impl MeshForm {
         Self::from_extension(path.extension()?.to_str()?)
     }
 
-    /// The form that the first bytes of a file show, if they show one.
+    /// The form that the first bytes of a file show, if they show one. Triangle's and ADCIRC's
+    /// files start with nothing but numbers or a title, and OBJ files with anything: those are known
+    /// by their names only.
     #[must_use]
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
-        let head = bytes[..bytes.len().min(1024)].trim_ascii_start();
-        let has = |word: &[u8]| head.windows(word.len()).any(|window| window == word);
-        if head.starts_with(b"$MeshFormat") || head.starts_with(b"$Comments") {
-            Some(Self::Msh)
-        } else if head.starts_with(b"OFF") || head.starts_with(b"COFF") || head.starts_with(b"NOFF")
-        {
-            Some(Self::Off)
-        } else if has(b"<VTKFile") {
-            Some(Self::Vtu)
-        } else {
-            None
+        const STARTS: [(&[u8], MeshForm); 15] = [
+            (b"$MeshFormat", MeshForm::Msh),
+            (b"$Comments", MeshForm::Msh),
+            (b"OFF", MeshForm::Off),
+            (b"COFF", MeshForm::Off),
+            (b"NOFF", MeshForm::Off),
+            (b"<VTKFile", MeshForm::Vtu),
+            (b"<?xml", MeshForm::Vtu),
+            (b"# vtk DataFile", MeshForm::VtkLegacy),
+            (b"MeshVersionFormatted", MeshForm::Medit),
+            (b"NDIME", MeshForm::Su2),
+            (b"ply", MeshForm::Ply),
+            (b"solid", MeshForm::Stl),
+            (b"mesh3d", MeshForm::NetgenVol),
+            (b"MESH2D", MeshForm::Sms2dm),
+            (b"*", MeshForm::Abaqus),
+        ];
+        let mut text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        loop {
+            if let Some((_, form)) = STARTS.iter().find(|(start, _)| text.starts_with(start)) {
+                return Some(*form);
+            }
+            // Comments may stand before the word that tells.
+            if !text.starts_with(b"#") && !text.starts_with(b"%") {
+                return None;
+            }
+            let end = memchr::memchr(b'\n', text)?;
+            text = text[end..].trim_ascii_start();
         }
     }
 
     /// Whether the form is written.
     #[must_use]
     pub const fn is_written(self) -> bool {
-        match self {
-            Self::Msh | Self::NodeEle | Self::Off | Self::Vtu => true,
-        }
+        !matches!(self, Self::NetgenVol | Self::Fort14 | Self::Sms2dm | Self::Abaqus)
     }
 
     /// Whether a file of this form can be written with numbers in this encoding.
@@ -117,7 +201,9 @@ impl MeshForm {
     pub fn has_encoding(self, encoding: Encoding) -> bool {
         match encoding {
             Encoding::Ascii => self.is_written(),
-            Encoding::Binary => matches!(self, Self::Msh | Self::Vtu),
+            Encoding::Binary => {
+                matches!(self, Self::Msh | Self::Vtu | Self::VtkLegacy | Self::Ply | Self::Stl)
+            }
             Encoding::Compressed => self == Self::Vtu,
         }
     }
@@ -125,13 +211,13 @@ impl MeshForm {
     /// Whether a file of this form says which edges have which marker.
     #[must_use]
     pub const fn carries_edges(self) -> bool {
-        !matches!(self, Self::Off)
+        !matches!(self, Self::Off | Self::Obj | Self::Stl)
     }
 
     /// Whether a file of this form says which region a triangle is in.
     #[must_use]
     pub const fn carries_regions(self) -> bool {
-        !matches!(self, Self::Off)
+        !matches!(self, Self::Off | Self::Obj | Self::Stl | Self::Su2 | Self::Fort14 | Self::Abaqus)
     }
 
     /// The files that a mesh of this form has beside its main one: the caller reads them into
@@ -222,8 +308,22 @@ pub struct WriteOptions {
 pub type Reader = fn(&[u8], &ReadOptions) -> Result<MeshData, ReadError>;
 
 /// The reader of every form.
-pub const READERS: [(MeshForm, Reader); 3] =
-    [(MeshForm::Msh, msh::read), (MeshForm::NodeEle, node_ele::read), (MeshForm::Off, off::read)];
+pub const READERS: [(MeshForm, Reader); MeshForm::ALL.len()] = [
+    (MeshForm::Msh, msh::read),
+    (MeshForm::NodeEle, node_ele::read),
+    (MeshForm::Off, off::read),
+    (MeshForm::Vtu, vtu::read),
+    (MeshForm::VtkLegacy, vtk_legacy::read),
+    (MeshForm::Medit, medit::read),
+    (MeshForm::Su2, su2::read),
+    (MeshForm::Obj, obj::read),
+    (MeshForm::Ply, ply::read),
+    (MeshForm::Stl, stl::read),
+    (MeshForm::NetgenVol, netgen_vol::read),
+    (MeshForm::Fort14, fort14::read),
+    (MeshForm::Sms2dm, sms_2dm::read),
+    (MeshForm::Abaqus, abaqus::read),
+];
 
 /// Reads a mesh file: nothing repaired, nothing dropped.
 ///
@@ -256,6 +356,9 @@ pub fn write_mesh(
     options: WriteOptions,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
+    if !form.is_written() {
+        return Err(WriteError::ReadOnly(form));
+    }
     mesh.validate()?;
     let is_binary = options.encoding == Encoding::Binary;
     if !form.has_encoding(options.encoding) {
@@ -270,6 +373,15 @@ pub fn write_mesh(
         MeshForm::NodeEle => node_ele::write_triangles(mesh, &mut text)?,
         MeshForm::Off => off::write(mesh, &mut text)?,
         MeshForm::Vtu => vtu::write(mesh, options.encoding, &mut text)?,
+        MeshForm::VtkLegacy => vtk_legacy::write(mesh, is_binary, &mut text)?,
+        MeshForm::Medit => medit::write(mesh, &mut text)?,
+        MeshForm::Su2 => su2::write(mesh, &mut text)?,
+        MeshForm::Obj => obj::write(mesh, &mut text)?,
+        MeshForm::Ply => ply::write(mesh, is_binary, &mut text)?,
+        MeshForm::Stl => stl::write(mesh, is_binary, &mut text)?,
+        MeshForm::NetgenVol | MeshForm::Fort14 | MeshForm::Sms2dm | MeshForm::Abaqus => {
+            return Err(WriteError::ReadOnly(form));
+        }
     }
     Ok(text.finish()?)
 }

@@ -13,6 +13,8 @@ pub(crate) enum Numbering {
     Base(i64),
     /// Entry `number - first` of the table is the index, or [`NO_POINT`].
     Table { first: i64, indices: Vec<u32> },
+    /// Number i is the point with index first + i, for i < count.
+    Window { first: u32, count: u32 },
     /// Numbers with large gaps: `(number, index)` by rising number.
     Sorted(Vec<(i64, u32)>),
 }
@@ -61,6 +63,10 @@ impl Numbering {
                 .checked_sub(*base)
                 .and_then(|index| u32::try_from(index).ok())
                 .unwrap_or(NO_POINT),
+            Self::Window { first, count } => match u32::try_from(number) {
+                Ok(index) if index < *count => first + index,
+                _ => NO_POINT,
+            },
             Self::Table { first, indices } => number
                 .checked_sub(*first)
                 .and_then(|offset| usize::try_from(offset).ok())
@@ -103,6 +109,7 @@ pub(crate) struct Assembler {
     edge_cells: Vec<Cell>,
     large_marker: Option<Cell>,
     others: BTreeMap<i64, OtherCells>,
+    kinds: BTreeMap<String, i64>,
     split_quads: bool,
 }
 
@@ -118,6 +125,7 @@ impl Assembler {
             edge_cells: Vec::new(),
             large_marker: None,
             others: BTreeMap::new(),
+            kinds: BTreeMap::new(),
             split_quads,
         }
     }
@@ -157,6 +165,11 @@ impl Assembler {
         self.numbering = Numbering::of(&self.numbers)
             .map_err(|number| scanner.fail(ReadFault::Duplicate { number }))?;
         Ok(())
+    }
+
+    /// From here on cells number `count` points from 0, the first of which has index `first`.
+    pub(crate) fn window(&mut self, first: usize, count: usize) {
+        self.numbering = Numbering::Window { first: first as u32, count: count as u32 };
     }
 
     /// Adds a triangle.
@@ -243,6 +256,13 @@ impl Assembler {
     pub(crate) fn other(&mut self, code: i64, count: u64, kind: impl FnOnce() -> String) {
         let entry = self.others.entry(code);
         entry.or_insert_with(|| OtherCells { kind: kind(), count: 0 }).count += count;
+    }
+
+    /// Counts a cell whose kind is only a name; kinds are ordered by first occurrence.
+    pub(crate) fn other_named(&mut self, kind: String) {
+        let next = self.kinds.len() as i64;
+        let code = *self.kinds.entry(kind.clone()).or_insert(next);
+        self.other(code, 1, || kind);
     }
 
     /// The mesh, with references beyond the last point reported.

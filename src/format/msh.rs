@@ -202,6 +202,10 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
                 msh41::read_elements(&mut scanner, codec, &entities, &mut mesh)?;
             }
             (b"$Entities", Version::V41) => entities = msh41::read_entities(&mut scanner, codec)?,
+            (b"$ParametricNodes", _) => {
+                let what = "a section `$ParametricNodes`".to_owned();
+                return Err(scanner.unsupported(what, "save it without parametric coordinates"));
+            }
             _ => {
                 skip_section(&mut scanner, name)?;
                 continue;

@@ -5,6 +5,7 @@
 //! reserves memory for it (SPEC X22).
 
 use crate::format::error::{At, ReadError, ReadFault};
+use memchr::{memchr, memmem};
 
 /// Order of the bytes of a binary number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,12 @@ impl<'a> Scanner<'a> {
         Self { bytes, at, line: 1, comment: None, binary: false, digits: 0 }
     }
 
+    /// A cursor at offset `start`, with the line it is on.
+    pub(crate) fn within(bytes: &'a [u8], start: usize) -> Self {
+        let lines = bytes[..start].iter().filter(|&&byte| byte == b'\n').count() as u64;
+        Self { at: start, line: lines + 1, ..Self::new(bytes) }
+    }
+
     /// The same cursor; `byte` starts a comment that ends with its line.
     pub(crate) fn with_comments(self, byte: u8) -> Self {
         Self { comment: Some(byte), ..self }
@@ -63,11 +70,6 @@ impl<'a> Scanner<'a> {
     /// Line of the next byte, from 1; `None` once the file turned out to be binary.
     pub(crate) fn line(&self) -> Option<u64> {
         (!self.binary).then_some(self.line)
-    }
-
-    /// Offset of the next byte.
-    pub(crate) fn offset(&self) -> usize {
-        self.at
     }
 
     /// The bytes not yet read.
@@ -122,7 +124,7 @@ impl<'a> Scanner<'a> {
     /// Moves to the line feed that ends this line, or to the end of the file.
     fn skip_to_line_end(&mut self) {
         let rest = &self.bytes[self.at..];
-        self.at += rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+        self.at += memchr(b'\n', rest).unwrap_or(rest.len());
     }
 
     /// Skips spaces, comments and line ends.
@@ -193,6 +195,17 @@ impl<'a> Scanner<'a> {
             self.line += 1;
         }
         text.trim_ascii()
+    }
+
+    /// Consumes the next line; returns it trimmed and without its comment, `None` at the end of
+    /// the file.
+    pub(crate) fn next_line(&mut self) -> Option<&'a [u8]> {
+        if self.at >= self.bytes.len() {
+            return None;
+        }
+        let line = self.rest_of_line();
+        let comment = self.comment.and_then(|byte| memchr(byte, line));
+        Some(comment.map_or(line, |end| line[..end].trim_ascii_end()))
     }
 
     /// Consumes `word`, or fails.
@@ -274,6 +287,28 @@ impl<'a> Scanner<'a> {
         let value = self.parse_float(token, expected)?;
         self.at += token.len();
         Ok(value)
+    }
+
+    /// Consumes the first `dimension` coordinates of a point; the others are 0.
+    #[inline]
+    pub(crate) fn point(&mut self, dimension: usize) -> Result<[f64; 3], ReadError> {
+        const NAMES: [&str; 3] =
+            ["the x coordinate of a point", "the y coordinate of a point", "the z coordinate"];
+        let mut point = [0.0; 3];
+        for (coordinate, name) in point.iter_mut().zip(NAMES).take(dimension) {
+            *coordinate = self.float(name)?;
+        }
+        Ok(point)
+    }
+
+    /// Consumes `N` references to points.
+    #[inline]
+    pub(crate) fn corners<const N: usize>(&mut self) -> Result<[i64; N], ReadError> {
+        let mut corners = [0; N];
+        for corner in &mut corners {
+            *corner = self.integer("the number of a point")?;
+        }
+        Ok(corners)
     }
 
     /// The value of `token` as a decimal, noting its digits.
@@ -361,10 +396,36 @@ impl<'a> Scanner<'a> {
         Ok(f64::from_le_bytes(self.take_array(endian, expected)?))
     }
 
+    /// Consumes a binary 32-bit float.
+    #[inline]
+    pub(crate) fn f32(&mut self, endian: Endian, expected: &str) -> Result<f64, ReadError> {
+        Ok(f64::from(f32::from_le_bytes(self.take_array(endian, expected)?)))
+    }
+
+    /// Consumes a binary 32-bit unsigned integer.
+    pub(crate) fn u32(&mut self, endian: Endian, expected: &str) -> Result<i64, ReadError> {
+        Ok(i64::from(u32::from_le_bytes(self.take_array(endian, expected)?)))
+    }
+
+    /// Consumes `length` bytes of this line.
+    pub(crate) fn skip_bytes(&mut self, length: usize) {
+        self.at += length.min(self.rest().len());
+    }
+
+    /// Moves on to byte `offset` of a binary file, never back, so that no file is read twice.
+    pub(crate) fn seek_forward(&mut self, offset: i64, expected: &str) -> Result<(), ReadError> {
+        match usize::try_from(offset) {
+            Ok(offset) if offset >= self.at && offset <= self.bytes.len() => {
+                self.at = offset;
+                Ok(())
+            }
+            _ => Err(self.malformed(expected, offset.to_string().as_bytes())),
+        }
+    }
+
     /// Moves past the next occurrence of `word`, wherever it stands.
     pub(crate) fn skip_past(&mut self, word: &[u8], expected: &str) -> Result<(), ReadError> {
-        let found = self.rest().windows(word.len()).position(|window| window == word);
-        let Some(found) = found else {
+        let Some(found) = memmem::find(self.rest(), word) else {
             self.line += self.rest().iter().filter(|&&b| b == b'\n').count() as u64;
             self.at = self.bytes.len();
             return Err(self.fail(ReadFault::Truncated { expected: expected.to_owned() }));

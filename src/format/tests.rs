@@ -42,7 +42,7 @@ impl Files {
 /// Every way to write a mesh that can be read again.
 fn ways() -> Vec<(MeshForm, WriteOptions)> {
     let mut ways = Vec::new();
-    for form in MeshForm::ALL.into_iter().filter(|form| *form != MeshForm::Vtu) {
+    for form in MeshForm::ALL.into_iter().filter(|form| form.is_written()) {
         for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::Compressed] {
             for msh_version in [MshVersion::V41, MshVersion::V22] {
                 let is_other = form != MeshForm::Msh && msh_version == MshVersion::V22;
