@@ -258,7 +258,7 @@ impl<'a> Front<'a> {
             });
         if let Some(quantum) = self.options.quantum {
             for trial in trials.iter_mut().flatten() {
-                trial.point = rounded(trial.point, quantum);
+                trial.point = trial.point.rounded_to(quantum);
             }
         }
         trials
@@ -266,7 +266,7 @@ impl<'a> Front<'a> {
 
     /// Whether the trial's exact cavity is sound and its clearances are kept.
     fn admits(&mut self, base: HalfEdgeId, trial: &Trial) -> bool {
-        self.cavity.carve(&mut self.open, &self.vertices, base, trial.point)
+        self.cavity.carve(&mut self.open, &self.vertices, base, trial)
             && self.cavity.is_clear(&self.vertices, trial)
     }
 
@@ -330,10 +330,4 @@ impl<'a> Front<'a> {
         self.open_edge(fan.from_a, t.half_edge(2), hint);
         self.open_edge(fan.to_b, t.half_edge(1), hint);
     }
-}
-
-/// The nearest point whose coordinates are multiples of `quantum`.
-pub(crate) fn rounded(p: Point2, quantum: f64) -> Point2 {
-    let round = |x: f64| libm::round(x / quantum) * quantum;
-    Point2::new(round(p.x), round(p.y))
 }

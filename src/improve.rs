@@ -8,7 +8,7 @@ mod flip;
 mod smooth;
 
 pub use flip::flip_to_delaunay;
-pub use smooth::{SmoothStats, smooth};
+use smooth::Smoother;
 
 use crate::point::Point2;
 use crate::triangulation::Triangulation;
@@ -35,20 +35,28 @@ pub struct ImproveStats {
     pub moves: u64,
 }
 
-/// Flips and smooths `mesh`; vertices below `fixed` never move. Linear in triangles per sweep.
+/// Flips and smooths `mesh`; vertices below `fixed` never move, and new coordinates are multiples
+/// of `quantum` if there is one. Afterwards the mesh is constrained Delaunay.
+///
+/// Linear in triangles for the first sweep; later ones look at what has changed only.
 pub fn improve(
     mesh: &mut Triangulation,
     points: &mut [Point2],
     fixed: usize,
+    quantum: Option<f64>,
     options: ImproveOptions,
 ) -> ImproveStats {
-    let mut stats = ImproveStats { flips: flip_to_delaunay(mesh, points), moves: 0 };
-    for _ in 0..options.sweeps {
-        let moved = smooth(mesh, points, fixed);
-        stats.moves += moved.moves;
-        let flips = flip_to_delaunay(mesh, points);
-        stats.flips += flips;
-        if moved.moves == 0 && flips == 0 {
+    let mut smoother = Smoother::new(mesh, points, fixed, quantum);
+    let mut stats = ImproveStats::default();
+    if options.sweeps > 0 {
+        stats.moves = smoother.sweep();
+    }
+    stats.flips = smoother.flip_all();
+    for _ in 1..options.sweeps {
+        let moves = smoother.sweep();
+        stats.moves += moves;
+        stats.flips += smoother.flip();
+        if moves == 0 {
             break;
         }
     }

@@ -38,6 +38,13 @@ impl Point2 {
         self.distance_sq(other).sqrt()
     }
 
+    /// The nearest point whose coordinates are multiples of `quantum`, a power of two.
+    #[must_use]
+    pub fn rounded_to(self, quantum: f64) -> Self {
+        let round = |x: f64| libm::round(x / quantum) * quantum;
+        Self::new(round(self.x), round(self.y))
+    }
+
     /// Key by which equal points are equal: the coordinates' bits with -0.0 folded into 0.0.
     #[must_use]
     pub fn key(self) -> [u64; 2] {

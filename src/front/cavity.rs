@@ -27,6 +27,13 @@ struct RingEdge {
     across: Across,
 }
 
+/// What becomes of an edge that the search for the cavity has come to.
+enum Crossing {
+    Absorbed(HalfEdgeId),
+    Outline,
+    Unsound,
+}
+
 /// The two open half-edges at the new point that become front edges.
 pub(super) struct Fan {
     /// From the base edge's origin to the new point.
@@ -35,6 +42,11 @@ pub(super) struct Fan {
     pub(super) to_b: HalfEdgeId,
 }
 
+/// Edges farther from the point than this many spacings are not flipped away: what the far open
+/// region looks like does not matter before the front gets there. In front of a flat front the
+/// circumcircles are huge and the full cavity has 16 triangles on average, this one 8, and the
+/// meshes come out the same (from 1.5 spacings on, on all domains tried).
+const REACH: f64 = 2.0;
 /// A new point keeps this fraction of its spacing from every other vertex it sees.
 const CLEARANCE_VERTEX: f64 = 0.66;
 /// And this fraction from every front edge.
@@ -48,34 +60,56 @@ impl Cavity {
         open: &mut Triangulation,
         vertices: &Vertices,
         base: HalfEdgeId,
-        p: Point2,
+        trial: &Trial,
     ) -> bool {
+        let p = trial.point;
+        let reach_sq = (REACH * trial.spacing).powi(2);
         self.begin();
         if !self.absorb(open, vertices, base.triangle(), p) {
             return false;
         }
         self.stack.extend([base.prev(), base.next(), base]);
         while let Some(e) = self.stack.pop() {
-            let across = open.across(e);
-            if let Across::Twin(twin) = across
-                && e != base
-            {
-                if open.mark(twin.triangle()) == self.epoch {
-                    // The cavity closes around a vertex: it is no disk.
-                    return false;
-                }
-                if self.absorb(open, vertices, twin.triangle(), p) {
-                    self.stack.extend([twin.prev(), twin.next()]);
-                    continue;
-                }
+            let edge = RingEdge {
+                origin: open.origin(e),
+                dest: open.dest(e),
+                across: if e == base { Across::Border(0) } else { open.across(e) },
+            };
+            match self.cross(open, vertices, edge, p, reach_sq) {
+                Crossing::Absorbed(twin) => self.stack.extend([twin.prev(), twin.next()]),
+                Crossing::Outline => self.ring.push(edge),
+                Crossing::Unsound => return false,
             }
-            let (origin, dest) = (open.origin(e), open.dest(e));
-            if orient2d(vertices.point(origin), vertices.point(dest), p) != Sign::Positive {
-                return false;
-            }
-            self.ring.push(RingEdge { origin, dest, across });
         }
         true
+    }
+
+    /// Whether the cavity goes on across an edge: it must where `p` lies beyond the edge, and may
+    /// where the edge is near and the triangle behind it has `p` in its circumcircle.
+    fn cross(
+        &mut self,
+        open: &mut Triangulation,
+        vertices: &Vertices,
+        edge: RingEdge,
+        p: Point2,
+        reach_sq: f64,
+    ) -> Crossing {
+        let (a, b) = (vertices.point(edge.origin), vertices.point(edge.dest));
+        if let Across::Twin(twin) = edge.across {
+            let is_near = a.distance_sq(p) < reach_sq || segment_distance_sq(a, b, p) < reach_sq;
+            if is_near || orient2d(a, b, p) != Sign::Positive {
+                if open.mark(twin.triangle()) == self.epoch {
+                    // The cavity closes around a vertex: it is no disk.
+                    return Crossing::Unsound;
+                }
+                if self.absorb(open, vertices, twin.triangle(), p) {
+                    return Crossing::Absorbed(twin);
+                }
+            } else {
+                return Crossing::Outline;
+            }
+        }
+        if orient2d(a, b, p) == Sign::Positive { Crossing::Outline } else { Crossing::Unsound }
     }
 
     fn begin(&mut self) {

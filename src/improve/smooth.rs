@@ -5,35 +5,115 @@
 //! an equilateral triangle, infinite for a flat one, smooth between, and free of square roots. One
 //! Newton step on it costs about as much as evaluating it twice.
 
+use super::flip::{flip_suspects, flip_to_delaunay};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 
-/// What a sweep did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SmoothStats {
-    /// Vertices that moved.
-    pub moves: u64,
+
+/// The mesh under improvement, and which of its vertices are worth another look.
+pub(super) struct Smoother<'a> {
+    mesh: &'a mut Triangulation,
+    points: &'a mut [Point2],
+    /// Vertices below this index never move.
+    fixed: usize,
+    /// New coordinates are multiples of this power of two.
+    quantum: Option<f64>,
+    /// A half-edge out of each vertex.
+    outgoing: Vec<Option<HalfEdgeId>>,
+    /// Vertices whose star has changed since they were last looked at.
+    active: Vec<bool>,
+    link: Vec<Point2>,
+    link_vertices: Vec<VertexId>,
+    suspects: Vec<HalfEdgeId>,
 }
 
-/// One sweep over the vertices from `fixed` on, in index order.
-///
-/// A vertex moves only if every triangle around it stays strictly counterclockwise (exact), the
-/// energy falls, and the worst of its triangles does not get worse.
-pub fn smooth(mesh: &Triangulation, points: &mut [Point2], fixed: usize) -> SmoothStats {
-    let outgoing = outgoing(mesh, points.len());
-    let mut stats = SmoothStats::default();
-    let mut link = Vec::with_capacity(16);
-    for v in fixed..points.len() {
-        if let Some(e) = outgoing[v]
-            && around(mesh, points, e, &mut link)
-            && let Some(place) = better_place(points[v], &link)
-        {
-            points[v] = place;
-            stats.moves += 1;
+impl<'a> Smoother<'a> {
+    pub(super) fn new(
+        mesh: &'a mut Triangulation,
+        points: &'a mut [Point2],
+        fixed: usize,
+        quantum: Option<f64>,
+    ) -> Self {
+        let outgoing = outgoing(mesh, points.len());
+        let active = vec![true; points.len()];
+        let (link, link_vertices, suspects) = (Vec::new(), Vec::new(), Vec::new());
+        Self { mesh, points, fixed, quantum, outgoing, active, link, link_vertices, suspects }
+    }
+
+    /// One sweep over the active vertices in index order; returns the number of moves. Edges that
+    /// a move makes suspect wait for [`flip`](Self::flip).
+    ///
+    /// A vertex moves only if every triangle around it stays strictly counterclockwise (exact), the
+    /// energy falls, and the worst of its triangles does not get worse.
+    pub(super) fn sweep(&mut self) -> u64 {
+        let mut moves = 0;
+        for v in self.fixed..self.points.len() {
+            if !std::mem::take(&mut self.active[v]) {
+                continue;
+            }
+            let Some(start) = self.outgoing[v].filter(|&e| self.gather_link(e)) else { continue };
+            if let Some(place) = better_place(self.points[v], &self.link, self.quantum) {
+                self.points[v] = place;
+                moves += 1;
+                self.active[v] = true;
+                for &u in &self.link_vertices {
+                    self.active[u.index()] = true;
+                }
+                self.suspect_star(start);
+            }
+        }
+        moves
+    }
+
+    /// All edges of the mesh are flipped to Delaunay: for the first time, when all are suspect.
+    pub(super) fn flip_all(&mut self) -> u64 {
+        self.suspects.clear();
+        let flips = flip_to_delaunay(self.mesh, self.points);
+        self.outgoing = outgoing(self.mesh, self.points.len());
+        flips
+    }
+
+    /// Flips the edges made suspect by the last sweep.
+    pub(super) fn flip(&mut self) -> u64 {
+        let (outgoing, active) = (&mut self.outgoing, &mut self.active);
+        flip_suspects(self.mesh, self.points, &mut self.suspects, |mesh, e| {
+            let f = mesh.twin(e).expect("a flipped edge has two sides");
+            for g in [e, e.next(), e.prev(), f.prev()] {
+                let v = mesh.origin(g).index();
+                outgoing[v] = Some(g);
+                active[v] = true;
+            }
+        })
+    }
+
+    fn suspect_star(&mut self, start: HalfEdgeId) {
+        let mut e = start;
+        loop {
+            self.suspects.extend([e, e.next()]);
+            match self.mesh.rotate_ccw(e) {
+                Some(next) if next != start => e = next,
+                _ => return,
+            }
         }
     }
-    stats
+
+    /// Fills `link` with the polygon around the origin of `start`; `false` on the border.
+    fn gather_link(&mut self, start: HalfEdgeId) -> bool {
+        self.link.clear();
+        self.link_vertices.clear();
+        let mut e = start;
+        loop {
+            let u = self.mesh.dest(e);
+            self.link_vertices.push(u);
+            self.link.push(self.points[u.index()]);
+            match self.mesh.rotate_ccw(e) {
+                None => return false,
+                Some(next) if next == start => return true,
+                Some(next) => e = next,
+            }
+        }
+    }
 }
 
 /// A half-edge out of each vertex.
@@ -49,25 +129,6 @@ fn outgoing(mesh: &Triangulation, vertices: usize) -> Vec<Option<HalfEdgeId>> {
         }
     }
     outgoing
-}
-
-/// Fills `link` with the polygon around the origin of `e`; `false` when it is on the border.
-fn around(
-    mesh: &Triangulation,
-    points: &[Point2],
-    start: HalfEdgeId,
-    link: &mut Vec<Point2>,
-) -> bool {
-    link.clear();
-    let mut e = start;
-    loop {
-        link.push(points[mesh.dest(e).index()]);
-        match mesh.rotate_ccw(e) {
-            None => return false,
-            Some(next) if next == start => return true,
-            Some(next) => e = next,
-        }
-    }
 }
 
 /// Energy, its gradient and Hessian, and the worst inverse mean ratio (unscaled) of a star.
@@ -126,7 +187,7 @@ const STEP_MIN: f64 = 1e-3;
 const TRIES: u32 = 3;
 
 /// A place for the vertex `v` in its link that is better and valid, if a step finds one.
-fn better_place(v: Point2, link: &[Point2]) -> Option<Point2> {
+fn better_place(v: Point2, link: &[Point2], quantum: Option<f64>) -> Option<Point2> {
     let now = energy(v, link);
     let [mut dx, mut dy] = now.step()?;
     let reach_sq = v.distance_sq(link[0]);
@@ -135,6 +196,7 @@ fn better_place(v: Point2, link: &[Point2]) -> Option<Point2> {
             return None;
         }
         let place = Point2::new(v.x + dx, v.y + dy);
+        let place = quantum.map_or(place, |q| place.rounded_to(q));
         let then = energy(place, link);
         if then.value < now.value && then.worst <= now.worst && is_valid(place, link) {
             return Some(place);

@@ -80,7 +80,11 @@ impl Fields {
 
     fn sources(&self, spacing: &[Option<f64>]) -> Vec<Source> {
         let source = |(&at, &h): (&Point2, &Option<f64>)| h.map(|spacing| Source { at, spacing });
-        self.points.iter().zip(spacing).filter_map(source).collect()
+        let mut sources: Vec<Source> =
+            self.points.iter().zip(spacing).filter_map(source).collect();
+        // Ties between sources go to the first: their order must not be the input's.
+        sources.sort_by(|s, t| s.at.lexicographic(t.at));
+        sources
     }
 
     fn segments_as_points(&self) -> Vec<[Point2; 2]> {
@@ -88,8 +92,10 @@ impl Fields {
     }
 
     fn mean_length(&self) -> f64 {
-        let sum: f64 = self.segments_as_points().iter().map(|[a, b]| a.distance(*b)).sum();
-        sum / self.edges.len() as f64
+        let mut lengths: Vec<f64> =
+            self.segments_as_points().iter().map(|[a, b]| a.distance(*b)).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.iter().sum::<f64>() / lengths.len() as f64
     }
 
     /// Sides that are at most `k` times their base grow by `k` over a height of sqrt(3)/2 of the

@@ -13,21 +13,25 @@ pub enum Density {
 
 /// Mean length of the edges at each of the `points`; `None` where no edge ends.
 ///
-/// `edges` lists each edge once, as indices into `points`. Time is linear.
+/// `edges` lists each edge once, as indices into `points`; their order does not matter, to the last
+/// bit. Time is O(n log n).
 pub fn node_spacing(
     points: &[Point2],
     edges: impl IntoIterator<Item = [u32; 2]>,
 ) -> Vec<Option<f64>> {
-    let mut sums = vec![(0.0, 0u32); points.len()];
-    for edge in edges {
-        let length = points[edge[0] as usize].distance(points[edge[1] as usize]);
-        for v in edge {
-            let (sum, count) = &mut sums[v as usize];
-            *sum += length;
-            *count += 1;
-        }
+    let mut ends: Vec<(u32, f64)> = Vec::new();
+    for [a, b] in edges {
+        let length = points[a as usize].distance(points[b as usize]);
+        ends.extend([(a, length), (b, length)]);
     }
-    sums.into_iter().map(|(sum, count)| (count > 0).then(|| sum / f64::from(count))).collect()
+    // Sums of floats depend on their order: shortest first is an order that all inputs share.
+    ends.sort_unstable_by(|(u, l), (v, m)| u.cmp(v).then(l.total_cmp(m)));
+    let mut spacing = vec![None; points.len()];
+    for node in ends.chunk_by(|(u, _), (v, _)| u == v) {
+        let sum: f64 = node.iter().map(|(_, length)| length).sum();
+        spacing[node[0].0 as usize] = Some(sum / node.len() as f64);
+    }
+    spacing
 }
 
 #[cfg(test)]
