@@ -2,7 +2,7 @@
 //!
 //! A domain is a planar straight-line graph (PSLG) given as closed loops, free segments and
 //! points, plus a rule that says which of its faces are meshed. Nothing here is repaired: a
-//! [`Domain`] may be invalid, and [`validate`](crate::domain::validate) finds every fault at once
+//! [`Domain`] may be invalid, and [`validate`] finds every fault at once
 //! and turns a sound one into a [`Plc`](crate::domain::validate::Plc).
 
 pub mod naca;

@@ -102,10 +102,20 @@ fn coordinates_must_be_finite() {
 // spec: D2
 #[test]
 fn the_largest_and_smallest_numbers_are_finite() {
-    sound(
-        &ring("[[-1e300,-1e300],[1e300,-1e300],[1e300,1e300],[-1e300,1e300]]").replace("300", "90"),
-    );
-    sound(&ring("[[0,0],[1e-60,0],[1e-60,1e-60],[0,1e-60]]"));
+    let square = |a: &str| ring("[[-A,-A],[A,-A],[A,A],[-A,A]]").replace('A', a);
+    for size in ["1.7976931348623157e308", "1e300", "1e-310", "4.9e-324"] {
+        sound(&square(size));
+        let bow = ring("[[-A,-A],[A,A],[A,-A],[-A,A]]").replace('A', size);
+        assert!(matches!(only(&bow), Fault::Crossing { .. }));
+        let corners = "[0,0],[A,-A]".replace('A', size);
+        let split = square(size).replace('}', &format!(", \"segments\": [[{corners}]]}}"));
+        assert_eq!(sound(&split).segments.len(), 5);
+    }
+    // All exponents at once: a needle from the least number to the greatest.
+    let needle = ring("[[0,0],[1e308,4.9e-324],[1e308,1e308],[0,4.9e-324]]");
+    assert_eq!(sound(&needle).segments.len(), 4);
+    let pierced = needle.replace('}', r#", "segments": [[[1,-1],[1,1]]]}"#);
+    assert_eq!(faults(&pierced).len(), 1);
 }
 
 // spec: D3

@@ -274,7 +274,7 @@ fn both_airfoil_layouts_give_the_same_loop() {
     assert_eq!(sound(DomainForm::Airfoil, open.trim_start_matches("EXAMPLE\n")).points.len(), 5);
 }
 
-// spec: X13
+// spec: X8 X13
 #[test]
 fn a_far_field_makes_the_air_the_domain() {
     let far_field = Some(FarField { chords: 10.0, points: 60 });

@@ -14,11 +14,13 @@ mod fault;
 mod graph;
 mod local;
 mod nesting;
+mod orientation;
 mod passes;
 mod status;
 mod sweep;
 
 pub use fault::{EdgeRef, Fault, LoopRef, Owner, SeedKind, SeedRef, VertexRef};
+pub use orientation::loop_orientation;
 
 use crate::domain::{Domain, Inside, Place, Region};
 use crate::point::Point2;

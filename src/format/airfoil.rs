@@ -61,7 +61,7 @@ fn read_lines(bytes: &[u8]) -> Result<Vec<Line>, DomainReadError> {
     let mut text = TextLines::new(bytes);
     let mut lines = Vec::new();
     let mut first = true;
-    while let Some((line, tokens)) = text.next() {
+    for (line, tokens) in text.by_ref() {
         match two_numbers(&tokens) {
             Ok(numbers) => lines.push((line, numbers)),
             Err(_) if first => {}

@@ -2,19 +2,19 @@
 
 use crate::domain::{Domain, Loop, LoopRole, Place, Segment};
 use crate::point::Point2;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// A domain under construction.
 #[derive(Debug)]
 pub(super) struct Builder {
     pub domain: Domain,
     /// The first point with these coordinates that a loop or segment uses.
-    shared: HashMap<[u64; 2], u32>,
+    shared: BTreeMap<[u64; 2], u32>,
 }
 
 impl Builder {
     pub fn new() -> Self {
-        Self { domain: Domain::new(Vec::new()), shared: HashMap::new() }
+        Self { domain: Domain::new(Vec::new()), shared: BTreeMap::new() }
     }
 
     /// A point of its own.

@@ -113,8 +113,8 @@ impl<'a> Item<'a> {
 
     /// Calls `each` with every item of an array.
     pub fn each(self, what: &'static str, mut each: impl FnMut(Item) -> Read<()>) -> Read<()> {
-        let items = self.array(what)?.iter().enumerate();
-        items.map(|(i, value)| each(Item { value, path: &Path::Index(self.path, i) })).collect()
+        let mut items = self.array(what)?.iter().enumerate();
+        items.try_for_each(|(i, value)| each(Item { value, path: &Path::Index(self.path, i) }))
     }
 
     /// Calls `then` with the value of a key, if there is one and it is not null.

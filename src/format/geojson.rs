@@ -79,8 +79,8 @@ fn read_geometry(geometry: &Geometry, path: &Path, builder: &mut Builder) -> Rea
 }
 
 fn each<T>(items: &[T], path: &Path, mut read: impl FnMut(&T, &Path) -> Read<()>) -> Read<()> {
-    let items = items.iter().enumerate();
-    items.map(|(i, item)| read(item, &Path::Index(path, i))).collect()
+    let mut items = items.iter().enumerate();
+    items.try_for_each(|(i, item)| read(item, &Path::Index(path, i)))
 }
 
 fn point(position: &Position, path: &Path) -> Read<Point2> {

@@ -8,7 +8,7 @@
 use super::sweep::Sweep;
 use crate::domain::BoundingBox;
 use crate::point::Point2;
-use crate::predicates::{Sign, orient2d};
+use crate::predicates::{SegmentIntersection, classify};
 
 /// Boxes visited for each edge of the input, on average, before the search stops. On real outlines
 /// an edge meets tens of boxes.
@@ -40,17 +40,14 @@ pub(super) struct Conflicts {
 
 /// How the edges `e` and `f` (ranks, left end first) meet, if they cross or overlap.
 pub(super) fn meeting(points: &[Point2], e: [u32; 2], f: [u32; 2]) -> Option<Meeting> {
-    let side = |[a, b]: [u32; 2], c: u32| {
-        orient2d(points[a as usize], points[b as usize], points[c as usize])
-    };
-    let of_f = f.map(|v| side(e, v));
-    if of_f == [Sign::Zero; 2] {
-        let shared = [e[0].max(f[0]), e[1].min(f[1])];
-        return (shared[0] < shared[1]).then_some(Meeting::Overlap(shared));
+    let [a, b, c, d] = [e[0], e[1], f[0], f[1]].map(|v| points[v as usize]);
+    match classify(a, b, c, d) {
+        SegmentIntersection::ProperCrossing => Some(Meeting::Crossing),
+        SegmentIntersection::CollinearOverlap { .. } | SegmentIntersection::Identical => {
+            Some(Meeting::Overlap([e[0].max(f[0]), e[1].min(f[1])]))
+        }
+        _ => None,
     }
-    let of_e = e.map(|v| side(f, v));
-    let apart = |[s, t]: [Sign; 2]| s != Sign::Zero && s == t.reversed();
-    (apart(of_e) && apart(of_f)).then_some(Meeting::Crossing)
 }
 
 /// Lists the pairs; at least those the sweep met, at most `limit` or little more.

@@ -13,7 +13,7 @@
 use super::graph::NONE;
 use super::status::{Position, Status};
 use crate::point::Point2;
-use crate::predicates::{Sign, orient2d};
+use crate::predicates::{SegmentIntersection, Sign, classify, orient2d};
 
 /// A piece of an edge between two vertices that follow each other on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -286,14 +286,11 @@ impl<'a> Sweeper<'a> {
 
     /// Whether the interiors of two pieces cross in a point.
     fn cross(&self, s: u32, t: u32) -> bool {
-        let (a, b) = (self.piece(s), self.piece(t));
-        if a.left == b.left || a.right == b.right {
+        let (s, t) = (self.piece(s), self.piece(t));
+        if s.left == t.left || s.right == t.right {
             return false;
         }
-        let apart = |piece: u32, other: Piece| {
-            let left = self.side(piece, self.point(other.left));
-            left != Sign::Zero && self.side(piece, self.point(other.right)) == left.reversed()
-        };
-        apart(s, b) && apart(t, a)
+        let [a, b, c, d] = [s.left, s.right, t.left, t.right].map(|v| self.point(v));
+        classify(a, b, c, d) == SegmentIntersection::ProperCrossing
     }
 }
