@@ -72,21 +72,33 @@ pub(super) fn split(
     net(pieces)
 }
 
+/// What runs along two vertices: the net weight from the lower to the higher, and a triangle that
+/// runs so and one that runs back.
+#[derive(Default)]
+struct Sum {
+    weight: i32,
+    owners: [Option<u32>; 2],
+}
+
 /// The sum of directed edges, as edges of positive weight sorted by their ends.
 pub(super) fn net(pieces: Vec<ChainEdge>) -> Vec<ChainEdge> {
-    let mut sums: BTreeMap<(u32, u32), (i32, [Option<u32>; 2])> = BTreeMap::new();
+    let mut sums: BTreeMap<[u32; 2], Sum> = BTreeMap::new();
     for e in pieces {
         let forward = e.from < e.to;
-        let (sum, owners) = sums.entry((e.from.min(e.to), e.from.max(e.to))).or_default();
-        *sum += if forward { e.weight } else { -e.weight };
-        owners[usize::from(!forward)].get_or_insert(e.triangle);
+        let sum = sums.entry([e.from.min(e.to), e.from.max(e.to)]).or_default();
+        sum.weight += if forward { e.weight } else { -e.weight };
+        sum.owners[usize::from(!forward)].get_or_insert(e.triangle);
     }
-    let edge = |((a, b), (sum, owners)): ((u32, u32), (i32, [Option<u32>; 2]))| {
-        let (from, to) = if sum > 0 { (a, b) } else { (b, a) };
-        let triangle = owners[usize::from(sum < 0)]?;
-        (sum != 0).then_some(ChainEdge { from, to, weight: sum.abs(), triangle })
-    };
-    sums.into_iter().filter_map(edge).collect()
+    sums.into_iter().filter_map(|(ends, sum)| sum.edge(ends)).collect()
+}
+
+impl Sum {
+    fn edge(&self, [low, high]: [u32; 2]) -> Option<ChainEdge> {
+        let (from, to) = if self.weight > 0 { (low, high) } else { (high, low) };
+        let triangle = self.owners[usize::from(self.weight < 0)]?;
+        let weight = self.weight.abs();
+        (weight != 0).then_some(ChainEdge { from, to, weight, triangle })
+    }
 }
 
 /// Groups edges by connection through vertices: the group of each edge, groups numbered in the

@@ -110,15 +110,14 @@ pub(super) fn assess(input: &Input<'_>, gates: &[Gate]) -> Measurements {
     let pieces = count.div_ceil(CHUNK);
     let mut columns = vec![0f32; pieces * CHUNK * COLUMNS];
     let mut sizes = vec![[0f64; 2]; count];
-    let own = |((columns, triangles), sizes): ((&mut [f32], &[[u32; 3]]), &mut [[f64; 2]])| {
-        measure_piece(input, triangles, columns, sizes)
-    };
     let tallies: Vec<Vec<Tally>> = columns
         .par_chunks_mut(CHUNK * COLUMNS)
         .zip(input.triangles.par_chunks(CHUNK))
         .zip(sizes.par_chunks_mut(CHUNK))
         .enumerate()
-        .map(|(piece, rest)| finish_tallies(own(rest), piece, gates))
+        .map(|(piece, ((columns, triangles), sizes))| {
+            finish_tallies(measure_piece(input, triangles, columns, sizes), piece, gates)
+        })
         .collect();
     let smallest =
         tallies.iter().map(|t| t[Metric::Area as usize].min).fold(f64::INFINITY, f64::min);

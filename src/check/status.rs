@@ -29,7 +29,6 @@ pub(super) struct Status {
 }
 
 /// Priority of a node: the finaliser of SplitMix64, truncated.
-#[expect(clippy::cast_possible_truncation, reason = "any 32 bits of the mix will do")]
 fn priority(node: u32) -> (u32, u32) {
     let mut z = u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
