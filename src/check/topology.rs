@@ -1,0 +1,202 @@
+//! What follows from adjacency alone: duplicate triangles, edges of more than two triangles, bow
+//! ties, parts and loops.
+
+use super::chain::Groups;
+use super::edges::{Edges, NONE};
+use super::id::Id;
+use super::report::{Collector, Draft, Statistics, show_triangle, show_vertex};
+use super::structure::Sound;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Reports M7; gives the later copies, sorted.
+///
+/// A triangle and its copy share three edges, and each of them is irregular: two run the same way,
+/// or, if one copy is reversed and has no other neighbours, all three are shared in pairs.
+pub(super) fn report_duplicates(
+    sound: &Sound<'_>,
+    edges: &Edges,
+    out: &mut Collector<'_>,
+) -> Vec<u32> {
+    let crowded = edges.irregular.iter().flat_map(super::edges::Irregular::triangles);
+    let mut candidates: Vec<u32> = crowded.collect();
+    let glued = |t: &u32| {
+        let at = 3 * *t as usize;
+        let twins = &edges.twin[at..at + 3];
+        twins[0] != NONE && twins.iter().all(|&h| h != NONE && h / 3 == twins[0] / 3)
+    };
+    candidates.extend((0..sound.triangles.len() as u32).filter(glued));
+    candidates.sort_unstable();
+    candidates.dedup();
+    let mut seen: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+    let mut copies = Vec::new();
+    for t in candidates {
+        let mut corners = sound.triangles[t as usize];
+        corners.sort_unstable();
+        let first = *seen.entry(corners).or_insert(t);
+        if first != t {
+            copies.push(t);
+            out.add(Id::DuplicateTriangle, || duplicate(sound, [first, t]));
+        }
+    }
+    copies
+}
+
+fn duplicate(sound: &Sound<'_>, pair: [u32; 2]) -> Draft {
+    let [first, again] = pair.map(|t| sound.origin(t));
+    let text = format!(
+        "triangle {} has the same corners as triangle {}",
+        show_triangle(sound.mesh, again),
+        show_triangle(sound.mesh, first)
+    );
+    Draft::new(Id::DuplicateTriangle, text)
+        .triangles([first, again])
+        .vertices(sound.triangles[pair[0] as usize])
+}
+
+/// Reports M12.
+pub(super) fn report_crowded_edges(sound: &Sound<'_>, edges: &Edges, out: &mut Collector<'_>) {
+    for edge in &edges.irregular {
+        let count = edge.forward.len() + edge.backward.len();
+        if count <= 2 {
+            continue;
+        }
+        out.add(Id::NonManifoldEdge, || {
+            let [a, b] = edge.vertices.map(|v| show_vertex(sound.mesh, v));
+            let text = format!("{count} triangles share the edge from {a} to {b}");
+            let triangles = edge.triangles().map(|t| sound.origin(t));
+            Draft::new(Id::NonManifoldEdge, text)
+                .triangles(triangles.take(16))
+                .vertices(edge.vertices)
+                .measured("triangles", count as f64)
+        });
+    }
+}
+
+/// Parts connected through edges, and counts.
+pub(super) struct Parts {
+    /// The part of each triangle, when there is more than one.
+    of_triangle: Option<Vec<u32>>,
+    components: u64,
+    vertices: u64,
+    boundary_edges: u64,
+    boundary_loops: u64,
+    triangles: u64,
+}
+
+/// Counts parts, vertices and boundary loops.
+pub(super) fn survey(sound: &Sound<'_>, edges: &Edges) -> Parts {
+    let triangles = sound.triangles.len();
+    let (labels, components) = label(triangles, &edges.twin);
+    let mut used = vec![false; sound.mesh.points.len()];
+    sound.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    Parts {
+        of_triangle: (components > 1).then_some(labels),
+        components,
+        vertices: used.iter().filter(|&&u| u).count() as u64,
+        boundary_edges: edges.chain.len() as u64,
+        boundary_loops: count_loops(&sound.triangles, edges),
+        triangles: triangles as u64,
+    }
+}
+
+/// The part of each triangle, by a flood over twins.
+fn label(triangles: usize, twin: &[u32]) -> (Vec<u32>, u64) {
+    let mut labels = vec![NONE; triangles];
+    let mut parts = 0;
+    let mut work = Vec::new();
+    for seed in 0..triangles {
+        if labels[seed] != NONE {
+            continue;
+        }
+        labels[seed] = parts;
+        work.push(seed as u32);
+        while let Some(t) = work.pop() {
+            for &half_edge in &twin[3 * t as usize..3 * t as usize + 3] {
+                let other = half_edge / 3;
+                if half_edge != NONE && labels[other as usize] == NONE {
+                    labels[other as usize] = parts;
+                    work.push(other);
+                }
+            }
+        }
+        parts += 1;
+    }
+    (labels, u64::from(parts))
+}
+
+/// Closed chains of boundary edges, each followed around the fan at its vertices: where loops touch
+/// at a vertex, each stays a loop of its own.
+fn count_loops(triangles: &[[u32; 3]], edges: &Edges) -> u64 {
+    let next = |h: u32| h - h % 3 + (h + 1) % 3;
+    let starts: Vec<u32> = edges
+        .chain
+        .iter()
+        .filter_map(|e| {
+            let at = triangles[e.triangle as usize].iter().position(|&v| v == e.from)?;
+            let half_edge = 3 * e.triangle + at as u32;
+            (edges.twin[half_edge as usize] == NONE).then_some(half_edge)
+        })
+        .collect();
+    let position: BTreeMap<u32, usize> = starts.iter().enumerate().map(|(i, &h)| (h, i)).collect();
+    let mut groups = Groups::new(starts.len());
+    for (i, &start) in starts.iter().enumerate() {
+        let mut half_edge = next(start);
+        while edges.twin[half_edge as usize] != NONE {
+            half_edge = next(edges.twin[half_edge as usize]);
+        }
+        if let Some(&j) = position.get(&half_edge) {
+            groups.join(i, j);
+        }
+    }
+    groups.numbers().iter().max().map_or(0, |&m| m as u64 + 1)
+}
+
+impl Parts {
+    /// Writes the counts.
+    pub(super) fn describe(&self, edges: &Edges, statistics: &mut Statistics) {
+        statistics.vertices_used = self.vertices;
+        statistics.edges = edges.count;
+        statistics.boundary_edges = self.boundary_edges;
+        statistics.boundary_loops = self.boundary_loops;
+        statistics.components = self.components;
+        statistics.euler = self.vertices as i64 - edges.count as i64 + self.triangles as i64;
+    }
+}
+
+/// Reports M13: a vertex by which alone parts of the mesh hang together.
+///
+/// Loops that touch at a vertex of one and the same part are no bow tie: that is how holes touch.
+pub(super) fn report_bow_ties(
+    sound: &Sound<'_>,
+    edges: &Edges,
+    parts: &Parts,
+    out: &mut Collector<'_>,
+) {
+    let Some(labels) = &parts.of_triangle else { return };
+    let explained: BTreeSet<u32> = sound
+        .dropped
+        .iter()
+        .flatten()
+        .copied()
+        .chain(edges.irregular.iter().flat_map(|e| e.vertices))
+        .collect();
+    let mut joints: BTreeMap<u32, BTreeMap<u32, u32>> = BTreeMap::new();
+    for edge in &edges.chain {
+        let part = labels[edge.triangle as usize];
+        joints.entry(edge.from).or_default().entry(part).or_insert(edge.triangle);
+    }
+    for (vertex, fans) in joints {
+        if fans.len() < 2 || explained.contains(&vertex) {
+            continue;
+        }
+        out.add(Id::BowTie, || {
+            let text = format!(
+                "{} parts of the mesh hang together by vertex {} only",
+                fans.len(),
+                show_vertex(sound.mesh, vertex)
+            );
+            let triangles = fans.values().map(|&t| sound.origin(t));
+            Draft::new(Id::BowTie, text).triangles(triangles.take(16)).vertices([vertex])
+        });
+    }
+}
