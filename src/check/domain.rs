@@ -223,8 +223,7 @@ pub(super) fn place(domain: &Domain, points: &[u32], source: Option<Source>) -> 
 
 fn show_place(place: &Place) -> Option<String> {
     match place {
-        Place::Line(line) => Some(format!("line {line}")),
-        Place::Path(path) => Some(path.clone()),
         Place::Made => None,
+        given => Some(given.to_string()),
     }
 }
