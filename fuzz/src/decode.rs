@@ -24,10 +24,6 @@ impl<'a> Decoder<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// Whether there is anything left.
-    pub fn has_more(&self) -> bool {
-        !self.bytes.is_empty()
-    }
 
     /// Any finite float.
     pub fn finite(&mut self) -> f64 {
