@@ -1,6 +1,7 @@
 //! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
 //! page, the completions and the tests.
 
+use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::draw::View;
 use crate::improve::ImproveOptions;
 use crate::{front, mesher, size};
@@ -253,7 +254,7 @@ pub enum Rules {
 #[command(after_help = "\
 Examples:
   trigrade check wing.msh --domain wing.poly
-  trigrade check wing.off --json
+  trigrade check wing.off --max-aspect 3 --gate 'min_angle >= 25 @ 99%' --json
   trigrade check - --from off < wing.off")]
 pub struct CheckArguments {
     /// The mesh; `-` is standard input.
@@ -271,6 +272,55 @@ pub struct CheckArguments {
     /// Far-field circle, as it was given to `mesh`.
     #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
     pub farfield: Option<Farfield>,
+    /// What is demanded.
+    #[command(flatten)]
+    pub demands: Demands,
+}
+
+/// What is demanded of a mesh beyond conformity.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Demands")]
+pub struct Demands {
+    /// No triangle's R/(2r) may be above this.
+    #[arg(long, value_name = "RATIO", value_parser = parse_clamp)]
+    pub max_aspect: Option<f64>,
+    /// No angle may be below this, in degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
+    pub min_angle: Option<f64>,
+    /// No two neighbours' areas may differ by more than this factor.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_clamp)]
+    pub max_area_ratio: Option<f64>,
+    /// Any metric: `radius_ratio <= 3 @ 99%`; repeatable.
+    #[arg(long, value_name = "GATE", value_parser = Gate::parse)]
+    pub gate: Vec<Gate>,
+    /// Every interior edge must be locally Delaunay.
+    #[arg(long)]
+    pub delaunay: bool,
+    /// Every interior edge that is no constraint must be locally Delaunay.
+    #[arg(long)]
+    pub constrained_delaunay: bool,
+    /// Findings of this id are reported but do not fail; repeatable.
+    #[arg(long, value_name = "ID")]
+    pub allow: Vec<Id>,
+}
+
+impl Demands {
+    /// The same in the checker's terms.
+    #[must_use]
+    pub fn options(&self) -> CheckOptions {
+        let most = |metric, bound: Option<f64>| bound.map(|bound| Gate::at_most(metric, bound));
+        let mut gates = Vec::new();
+        gates.extend(most(Metric::RadiusRatio, self.max_aspect));
+        gates.extend(self.min_angle.map(|bound| Gate::at_least(Metric::MinAngle, bound)));
+        gates.extend(most(Metric::NeighbourAreaRatio, self.max_area_ratio));
+        gates.extend(self.gate.iter().cloned());
+        let mut options = CheckOptions::new()
+            .delaunay(self.delaunay)
+            .constrained_delaunay(self.constrained_delaunay);
+        options.gates = gates;
+        options.allow = self.allow.iter().copied().collect();
+        options
+    }
 }
 
 /// `trigrade demo`

@@ -6,6 +6,7 @@ use super::failure::Failure;
 use super::mesh_file::load_mesh;
 use super::outcome::Outcome;
 use super::verdict;
+use crate::check::check;
 
 /// Runs the verb.
 ///
@@ -22,7 +23,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Outcome, Failure> {
         Some(path) => Some(load_domain(path, &reading)?.1),
         None => None,
     };
-    let report = verdict::check_mesh(&mesh, domain.as_ref());
+    let report = check(&mesh, domain.as_ref(), &arguments.demands.options());
     Ok(Outcome {
         exit: report.exit_code(),
         text: verdict::text(&report, &input.name),

@@ -2,7 +2,7 @@
 
 use super::failure::Diagnostic;
 use super::mesh::count;
-use crate::check::{CheckOptions, Finding, Report, Verdict, check};
+use crate::check::{CheckOptions, Finding, GateOutcome, Metric, Report, Verdict, check};
 use crate::domain::Domain;
 use crate::mesh::MeshData;
 use serde_json::{Value, json};
@@ -98,6 +98,14 @@ pub fn text(report: &Report, name: &str) -> String {
     for other in &facts.other_cells {
         line("not checked", format!("{} {}", count(other.count), other.kind));
     }
+    for gate in &report.gates {
+        let outcome = match gate.outcome {
+            GateOutcome::Held => "holds",
+            GateOutcome::Missed => "MISSED",
+            GateOutcome::CouldNotRun => "could not be evaluated",
+        };
+        line("gate", format!("{}: {outcome}", gate.gate));
+    }
     line("verdict", verdict_line(report));
     lines.join("\n")
 }
@@ -135,11 +143,12 @@ impl Figures {
     #[must_use]
     pub fn of(report: &Report) -> Option<Self> {
         let quality = report.quality.as_ref()?;
+        let ratio = quality.summary(Metric::RadiusRatio)?;
         Some(Self {
-            mean: quality.radius_ratio.mean,
-            p99: quality.radius_ratio.p99,
-            max: quality.radius_ratio.max,
-            angle_min_deg: quality.min_angle.min,
+            mean: ratio.mean?,
+            p99: ratio.percentile_99?,
+            max: ratio.max?,
+            angle_min_deg: quality.summary(Metric::MinAngle)?.min?,
         })
     }
 
