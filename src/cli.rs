@@ -1,17 +1,30 @@
 //! The command line: arguments, printing and exit codes. All work is done by the library below.
 
 pub mod arguments;
+pub mod check;
 pub mod console;
+pub mod convert;
+pub mod demo;
+pub mod domain_file;
 pub mod explain;
 pub mod failure;
+pub mod forms;
 pub mod input;
+pub mod mesh;
+pub mod mesh_file;
+pub mod outcome;
 pub mod output;
+pub mod verdict;
+pub mod watch;
 
 use arguments::{Arguments, Verb};
 use clap::{CommandFactory, Parser};
 use console::Console;
 use failure::{Diagnostic, EXIT_HOLDS, Failure};
+use outcome::{Outcome, Reports};
 use output::Cleanup;
+use serde_json::Value;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Runs the program on the process's arguments.
@@ -19,27 +32,60 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     // Usage errors and help end here, with clap's exit codes: 2 and 0.
     let arguments = Arguments::parse();
-    let mut console = Console::new(&arguments.global, false);
-    match run(&arguments, &mut console) {
-        Ok(exit) => ExitCode::from(exit),
+    let exit = run(&arguments).unwrap_or_else(|failure| {
+        Console::new(&arguments.global, true).complain(&failure);
+        failure.exit
+    });
+    ExitCode::from(exit)
+}
+
+/// Carries the arguments out; the exit code, unless the reports themselves failed.
+fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let global = &arguments.global;
+    let is_stdout_taken = outcome::is_stdout_taken(global, outputs(&arguments.verb))?;
+    let console = Console::new(global, is_stdout_taken);
+    let cleanup = Cleanup::default();
+    cleanup.on_interrupt()?;
+    set_threads(global.threads)?;
+    let reports = Reports::prepare(global, &cleanup)?;
+    match run_verb(&arguments.verb, &console, &cleanup) {
+        Ok(outcome) => {
+            if !outcome.text.is_empty() {
+                console.say(&outcome.text);
+            }
+            reports.write(&outcome.text, &outcome.json)?;
+            Ok(outcome.exit)
+        }
         Err(failure) => {
             console.complain(&failure);
-            ExitCode::from(failure.exit)
+            reports.write(&outcome::failure_text(&failure), &outcome::failure_json(&failure))?;
+            Ok(failure.exit)
         }
     }
 }
 
-fn run(arguments: &Arguments, console: &mut Console) -> Result<u8, Failure> {
-    let cleanup = Cleanup::default();
-    cleanup.on_interrupt()?;
-    set_threads(arguments.global.threads)?;
-    match &arguments.verb {
+fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome, Failure> {
+    match verb {
+        Verb::Mesh(mesh) => return mesh::run(mesh, console, cleanup),
+        Verb::Check(check) => return check::run(check),
+        Verb::Demo(demo) => return demo::run(demo, console, cleanup),
+        Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
+        Verb::Plot(plot) => return convert::plot(plot, cleanup),
         Verb::Explain(explain) => explain::run(explain.id.as_deref(), console)?,
         Verb::Completions(completions) => print_completions(completions.shell, console),
         Verb::Man => print_manual(console)?,
-        _ => todo!(),
     }
-    Ok(EXIT_HOLDS)
+    Ok(Outcome { exit: EXIT_HOLDS, text: String::new(), json: Value::Null })
+}
+
+/// The outputs of a verb that may go to standard output.
+fn outputs(verb: &Verb) -> &[PathBuf] {
+    match verb {
+        Verb::Mesh(mesh) => &mesh.outputs,
+        Verb::Convert(convert) => &convert.outputs,
+        Verb::Plot(plot) => &plot.outputs,
+        _ => &[],
+    }
 }
 
 fn set_threads(threads: Option<u16>) -> Result<(), Failure> {

@@ -54,10 +54,8 @@ fn crate_modules(line: &str) -> Vec<String> {
             None => vec![rest],
         };
         for path in named {
-            let end = path.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(path.len());
-            let module = &path.trim_start()[..end.min(path.trim_start().len())];
             let module: String =
-                module.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                path.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
             found.extend((!module.is_empty()).then_some(module));
         }
     }
@@ -71,19 +69,19 @@ fn top_level(list: &str) -> Vec<&str> {
         match c {
             '{' => depth += 1,
             '}' if depth == 0 => {
-                items.push(&list[start..i]);
+                items.push(list[start..i].trim_start());
                 return items;
             }
             '}' => depth -= 1,
             ',' if depth == 0 => {
-                items.push(&list[start..i]);
+                items.push(list[start..i].trim_start());
                 start = i + 1;
             }
             _ => {}
         }
     }
-    items.push(&list[start..]);
-    items.iter().map(|item| item.trim_start()).collect()
+    items.push(list[start..].trim_start());
+    items
 }
 
 /// Fails for each crate module that a file below src names and must not.
@@ -177,8 +175,8 @@ fn the_library_has_no_clock_no_randomness_and_no_platform_trigonometry() {
         ("Instant::now", "no clock below the command line"),
         ("SystemTime", "no clock below the command line"),
         ("thread_rng", "no randomness"),
-        ("HashMap", "hashing order is not deterministic: BTreeMap or an index"),
-        ("HashSet", "hashing order is not deterministic: BTreeSet or an index"),
+        ("HashMap", "hashing order is not deterministic: BTreeMap, or say `lookups only`"),
+        ("HashSet", "hashing order is not deterministic: BTreeSet, or say `lookups only`"),
         (".sin()", "libm::sin: the same on every platform"),
         (".cos()", "libm::cos: the same on every platform"),
         (".acos()", "libm::acos: the same on every platform"),
@@ -190,9 +188,12 @@ fn the_library_has_no_clock_no_randomness_and_no_platform_trigonometry() {
             continue;
         }
         let text = read(&path);
+        // A hash table that is never iterated is as deterministic as any other.
+        let is_excused =
+            |word: &str| word.starts_with("Hash") && text.contains("// lookups only");
         for (line, code) in code(&text) {
-            for (word, why) in BANNED {
-                assert!(!code.contains(word), "{name}:{line}: error: {word} is banned: {why}");
+            for (word, why) in BANNED.iter().filter(|(word, _)| !is_excused(word)) {
+                assert!(!code.contains(*word), "{name}:{line}: error: {word} is banned: {why}");
             }
         }
     }

@@ -1,6 +1,10 @@
 //! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
 //! page, the completions and the tests.
 
+use crate::check::{CheckOptions, Gate, Id, Metric};
+use crate::draw::View;
+use crate::improve::ImproveOptions;
+use crate::{front, mesher, size};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -130,26 +134,66 @@ pub struct MeshOptions {
     #[arg(long, value_enum, default_value_t = Gradation::Growth)]
     pub gradation: Gradation,
     /// Largest slope of the spacing with `--gradation growth`.
-    #[arg(long, value_name = "SLOPE", value_parser = parse_positive)]
-    pub growth: Option<f64>,
+    #[arg(long, value_name = "SLOPE", default_value_t = 0.25, value_parser = parse_positive)]
+    pub growth: f64,
     /// Keep the spacing within [b/K, K b] of the base edge's length b.
-    #[arg(long, value_name = "K", value_parser = parse_clamp)]
-    pub clamp: Option<f64>,
+    #[arg(long, value_name = "K", default_value_t = 1.5, value_parser = parse_clamp)]
+    pub clamp: f64,
     /// Spacing for `--gradation uniform`; without it the mean boundary edge.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     pub spacing: Option<f64>,
     /// Which front edge goes first.
-    #[arg(long, value_enum, default_value_t = Order::Layered)]
+    #[arg(long, value_enum, default_value_t = Order::Depth)]
     pub order: Order,
     /// The angle rules of the front: candidates that are scored, or hard decisions.
     #[arg(long, value_enum, default_value_t = Rules::Scored)]
     pub rules: Rules,
     /// Refuse, before any work, to make more triangles than this.
-    #[arg(long, value_name = "COUNT", default_value_t = 50_000_000)]
-    pub max_triangles: u64,
-    /// Leave out the flips and the smoothing after the front.
+    #[arg(long, value_name = "COUNT", default_value_t = 20_000_000)]
+    pub max_triangles: u32,
+    /// Leave out the smoothing after the front.
     #[arg(long)]
     pub no_improve: bool,
+}
+
+impl MeshOptions {
+    /// The same in the library's terms.
+    #[must_use]
+    pub fn options(&self) -> mesher::Options {
+        let defaults = mesher::Options::default();
+        mesher::Options {
+            method: match self.method {
+                Method::Graded => mesher::Method::Graded,
+                Method::Afm => mesher::Method::Afm,
+                Method::Direct => mesher::Method::Direct,
+                Method::DelaunayInitial => mesher::Method::DelaunayInitial,
+            },
+            density: match self.density {
+                Density::AllEdges => size::Density::AllEdges,
+                Density::BoundaryEdges => size::Density::BoundaryEdges,
+            },
+            gradation: match self.gradation {
+                Gradation::Growth => mesher::Gradation::Growth,
+                Gradation::Mean => mesher::Gradation::Mean,
+                Gradation::Third => mesher::Gradation::Third,
+                Gradation::Uniform => mesher::Gradation::Uniform,
+            },
+            growth: self.growth,
+            clamp: self.clamp,
+            spacing: self.spacing,
+            order: match self.order {
+                Order::Depth => front::Order::Depth,
+                Order::Shortest => front::Order::Shortest,
+            },
+            rules: match self.rules {
+                Rules::Scored => front::Rules::Scored,
+                Rules::Hard => front::Rules::Hard,
+            },
+            triangles_max: self.max_triangles as usize,
+            improve: if self.no_improve { ImproveOptions { sweeps: 0 } } else { defaults.improve },
+            ..defaults
+        }
+    }
 }
 
 /// `--method`
@@ -191,7 +235,7 @@ pub enum Gradation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Order {
     /// Nearest to the boundary first.
-    Layered,
+    Depth,
     /// Shortest first.
     Shortest,
 }
@@ -210,7 +254,7 @@ pub enum Rules {
 #[command(after_help = "\
 Examples:
   trigrade check wing.msh --domain wing.poly
-  trigrade check wing.off --json
+  trigrade check wing.off --max-aspect 3 --gate 'min_angle >= 25 @ 99%' --json
   trigrade check - --from off < wing.off")]
 pub struct CheckArguments {
     /// The mesh; `-` is standard input.
@@ -228,6 +272,55 @@ pub struct CheckArguments {
     /// Far-field circle, as it was given to `mesh`.
     #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
     pub farfield: Option<Farfield>,
+    /// What is demanded.
+    #[command(flatten)]
+    pub demands: Demands,
+}
+
+/// What is demanded of a mesh beyond conformity.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Demands")]
+pub struct Demands {
+    /// No triangle's R/(2r) may be above this.
+    #[arg(long, value_name = "RATIO", value_parser = parse_clamp)]
+    pub max_aspect: Option<f64>,
+    /// No angle may be below this, in degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
+    pub min_angle: Option<f64>,
+    /// No two neighbours' areas may differ by more than this factor.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_clamp)]
+    pub max_area_ratio: Option<f64>,
+    /// Any metric: `radius_ratio <= 3 @ 99%`; repeatable.
+    #[arg(long, value_name = "GATE", value_parser = Gate::parse)]
+    pub gate: Vec<Gate>,
+    /// Every interior edge must be locally Delaunay.
+    #[arg(long)]
+    pub delaunay: bool,
+    /// Every interior edge that is no constraint must be locally Delaunay.
+    #[arg(long)]
+    pub constrained_delaunay: bool,
+    /// Findings of this id are reported but do not fail; repeatable.
+    #[arg(long, value_name = "ID")]
+    pub allow: Vec<Id>,
+}
+
+impl Demands {
+    /// The same in the checker's terms.
+    #[must_use]
+    pub fn options(&self) -> CheckOptions {
+        let most = |metric, bound: Option<f64>| bound.map(|bound| Gate::at_most(metric, bound));
+        let mut gates = Vec::new();
+        gates.extend(most(Metric::RadiusRatio, self.max_aspect));
+        gates.extend(self.min_angle.map(|bound| Gate::at_least(Metric::MinAngle, bound)));
+        gates.extend(most(Metric::NeighbourAreaRatio, self.max_area_ratio));
+        gates.extend(self.gate.iter().cloned());
+        let mut options = CheckOptions::new()
+            .delaunay(self.delaunay)
+            .constrained_delaunay(self.constrained_delaunay);
+        options.gates = gates;
+        options.allow = self.allow.iter().copied().collect();
+        options
+    }
 }
 
 /// `trigrade demo`
@@ -279,8 +372,8 @@ pub struct PlotArguments {
     #[arg(long, value_name = "FORM")]
     pub form: Option<String>,
     /// Draw only this part of the plane.
-    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_window, allow_hyphen_values = true)]
-    pub window: Option<Window>,
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
+    pub window: Option<View>,
     /// Width of the picture in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 1200)]
     #[arg(value_parser = clap::value_parser!(u32).range(16..=20_000))]
@@ -302,15 +395,6 @@ pub struct Farfield {
     pub radius: f64,
     /// On the circle.
     pub points: u32,
-}
-
-/// A rectangle of the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// Lower left corner.
-    pub low: [f64; 2],
-    /// Upper right corner.
-    pub high: [f64; 2],
 }
 
 /// Kinds of reports.
@@ -375,15 +459,6 @@ fn parse_farfield(text: &str) -> Result<Farfield, String> {
     }
 }
 
-fn parse_window(text: &str) -> Result<Window, String> {
-    let numbers = text.split(',').map(parse_finite).collect::<Result<Vec<_>, _>>()?;
-    match numbers[..] {
-        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(Window { low: [x0, y0], high: [x1, y1] }),
-        [_, _, _, _] => Err("X0 must be below X1 and Y0 below Y1".into()),
-        _ => Err("write it as X0,Y0,X1,Y1".into()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -404,6 +479,15 @@ mod tests {
                 assert!(argument.get_help().is_some(), "{} {id} has no help", verb.get_name());
             }
         }
+    }
+
+    #[test]
+    fn defaults_are_those_of_the_library() {
+        let Verb::Mesh(mesh) = Arguments::parse_from(["trigrade", "mesh", "a", "-o", "b"]).verb
+        else {
+            panic!("the verb is mesh");
+        };
+        assert_eq!(mesh.options.options(), mesher::Options::default());
     }
 
     #[test]
@@ -429,14 +513,6 @@ mod tests {
         assert_eq!(parse_farfield("15,60"), Ok(Farfield { radius: 15.0, points: 60 }));
         for wrong in ["15", "15,2", "0,60", "15,-3", "15,99999999999", "15,60,3"] {
             assert!(parse_farfield(wrong).is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn windows() {
-        assert_eq!(parse_window("-1,-1,2,1").map(|w| w.low), Ok([-1.0, -1.0]));
-        for wrong in ["1,1,1,2", "0,0,1", "0,0,1,1,1", "a,0,1,1", "0,3,1,1"] {
-            assert!(parse_window(wrong).is_err(), "{wrong}");
         }
     }
 }

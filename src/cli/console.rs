@@ -2,7 +2,7 @@
 
 use super::arguments::Global;
 use super::failure::Failure;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
@@ -69,16 +69,16 @@ impl Console {
         }
     }
 
-    /// A spinner on standard error that shows itself only on a terminal, and only after half a
-    /// second: short work needs none.
+    /// A progress bar on standard error, hidden unless that is a terminal; it shows itself after
+    /// half a second, for short work needs none.
     #[must_use]
-    pub fn spinner(&self, message: &'static str) -> ProgressBar {
-        if self.people == People::Nowhere || !io::stderr().is_terminal() {
+    pub fn bar(&self) -> ProgressBar {
+        if self.people == People::Nowhere || self.json || !io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::new_spinner().with_message(message);
-        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
+        let style = ProgressStyle::with_template("{msg:12} {wide_bar} {human_pos}/{human_len}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.enable_steady_tick(Duration::from_millis(500));
         bar
     }

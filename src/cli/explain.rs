@@ -54,7 +54,7 @@ fn head(text: &str) -> Option<(&str, &str)> {
 ///
 /// # Errors
 /// Exit code 2 for an id that the specification does not have, with the nearest one.
-pub fn run(id: Option<&str>, console: &mut Console) -> Result<(), Failure> {
+pub fn run(id: Option<&str>, console: &Console) -> Result<(), Failure> {
     let rules = rules(SPEC);
     let Some(wanted) = id else {
         for rule in &rules {

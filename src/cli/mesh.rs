@@ -1,0 +1,331 @@
+//! `trigrade mesh`: domain in, checked mesh out.
+
+use super::arguments::{Farfield, MeshArguments};
+use super::console::Console;
+use super::domain_file::{invalid, load_domain};
+use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
+use super::forms::{OutputFile, OutputForm, is_read, output_files};
+use super::input::is_dash;
+use super::mesh_file::{self, Drawing, malformed, parse};
+use super::outcome::Outcome;
+use super::output::{Cleanup, Outputs};
+use super::verdict::{self, Figures};
+use super::watch::{Watch, time};
+use crate::check::Report;
+use crate::domain::Domain;
+use crate::domain::validate::{Plc, validate};
+use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
+use crate::mesh::MeshData;
+use crate::mesher::{MeshError, Meshed, Observer, Options, mesh_plc};
+use crate::size::Prediction;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Runs the verb.
+///
+/// # Errors
+/// Exit code 1: the domain is invalid. Exit code 2: files, limits, options.
+pub fn run(
+    arguments: &MeshArguments,
+    console: &Console,
+    cleanup: &Cleanup,
+) -> Result<Outcome, Failure> {
+    let mut watch = Watch::new(console);
+    let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
+    watch.begin("read");
+    let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
+    let options = arguments.options.options();
+    // Staged before the long work: a target that cannot be written is known now.
+    let mut outputs = Outputs::prepare(&paths(&files), cleanup)?;
+    watch.begin("validate");
+    let plc = validate(&domain).map_err(|faults| invalid(&input.name, &faults))?;
+    let mut summary = Summary::of(&input.name, &domain, arguments.reading.farfield);
+    if arguments.dry_run {
+        summary.prediction = Some(predict(plc, &options)?);
+        return Ok(summary.outcome(watch.finish(), arguments.timings));
+    }
+    let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    watch.begin("write");
+    summary.note(&meshed);
+    write_all(&mut outputs, &files, &meshed)?;
+    if !arguments.no_check {
+        watch.begin("read back");
+        let meshes = read_back(&outputs, &files, &meshed)?;
+        watch.begin("check");
+        summary.check = Some(check_all(&meshes, &domain)?);
+    }
+    if summary.exit() == EXIT_HOLDS {
+        outputs.commit()?;
+        summary.written = paths(&files);
+    }
+    let laps = watch.finish();
+    Ok(summary.outcome(laps, arguments.timings))
+}
+
+fn paths(files: &[OutputFile]) -> Vec<PathBuf> {
+    files.iter().map(|file| file.path.clone()).collect()
+}
+
+/// Stops the mesher as soon as it has predicted the number of triangles.
+#[derive(Default)]
+struct Predict {
+    prediction: Option<Prediction>,
+}
+
+impl Observer for Predict {
+    fn predicted(&mut self, prediction: Prediction) -> bool {
+        self.prediction = Some(prediction);
+        false
+    }
+}
+
+fn predict(plc: Plc, options: &Options) -> Result<Prediction, Failure> {
+    let mut observer = Predict::default();
+    let outcome = mesh_plc(plc, options, &mut observer);
+    match (observer.prediction, outcome) {
+        (Some(prediction), _) => Ok(prediction),
+        (None, Err(error)) => Err(no_mesh(&error)),
+        (None, Ok(_)) => unreachable!("the mesher predicts before it meshes"),
+    }
+}
+
+/// Why the mesher made no mesh, as exit code and complaint.
+#[must_use]
+pub fn no_mesh(error: &MeshError) -> Failure {
+    let diagnostic = Diagnostic::new(error.to_string());
+    match error {
+        MeshError::Invalid(_) | MeshError::Background(_) => Failure::findings(vec![diagnostic]),
+        MeshError::TooMany { .. } => Failure::cannot_run(
+            diagnostic.help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
+        ),
+        MeshError::Front(_) | MeshError::Options(_) => Failure::cannot_run(diagnostic),
+    }
+}
+
+/// Writes every file into its stage.
+fn write_all(
+    outputs: &mut Outputs,
+    files: &[OutputFile],
+    meshed: &Meshed,
+) -> Result<(), Failure> {
+    let needs_picture = files.iter().any(|file| file.form.is_picture());
+    let data = if needs_picture { MeshData::from(&meshed.mesh) } else { MeshData::default() };
+    let drawing = Drawing::of(&data, "");
+    for (i, file) in files.iter().enumerate() {
+        mesh_file::write(outputs, i, file, MeshView::from(&meshed.mesh), &drawing)?;
+    }
+    Ok(())
+}
+
+/// Every written mesh that can be read, read from its bytes; where none can, the mesh written to
+/// an OFF file and read from there.
+fn read_back(
+    outputs: &Outputs,
+    files: &[OutputFile],
+    meshed: &Meshed,
+) -> Result<Vec<(String, MeshData)>, Failure> {
+    let mut meshes = Vec::new();
+    let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
+    for (i, file) in files.iter().enumerate() {
+        let OutputForm::Mesh(form, _) = file.form else { continue };
+        if !is_read(form) {
+            continue;
+        }
+        match file.companion {
+            // Companions stand before their main file.
+            Some(companion) => companions.push((companion, outputs.read_back(i)?)),
+            None => {
+                let name = file.path.display().to_string();
+                let bytes = outputs.read_back(i)?;
+                let mesh = parse(&bytes, form, &std::mem::take(&mut companions));
+                meshes.push((name.clone(), mesh.map_err(|e| unreadable(&name, &e))?));
+            }
+        }
+    }
+    if meshes.is_empty() {
+        meshes.push(("a temporary OFF file".into(), through_off(meshed)?));
+    }
+    Ok(meshes)
+}
+
+fn through_off(meshed: &Meshed) -> Result<MeshData, Failure> {
+    let mut bytes = Vec::new();
+    let options = WriteOptions::default();
+    write_mesh(MeshView::from(&meshed.mesh), MeshForm::Off, options, &mut bytes)
+        .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
+    parse(&bytes, MeshForm::Off, &[]).map_err(|e| unreadable("a temporary OFF file", &e))
+}
+
+/// A file that was written and cannot be read back is a fault of this program.
+fn unreadable(name: &str, error: &crate::format::ReadError) -> Failure {
+    let mut failure = malformed(name, error);
+    failure.exit = EXIT_FINDINGS;
+    failure.diagnostics[0].message.insert_str(0, "the written mesh cannot be read back: ");
+    failure.diagnostics[0].helps.push("this is a fault of trigrade; nothing was written".into());
+    failure
+}
+
+/// Checks each mesh; the first report that is no pass, or the first.
+fn check_all(meshes: &[(String, MeshData)], domain: &Domain) -> Result<(String, Report), Failure> {
+    let mut first = None;
+    for (name, mesh) in meshes {
+        let report = verdict::check_mesh(mesh, Some(domain));
+        let passed = report.passed();
+        let named = (name.clone(), report);
+        if !passed {
+            return Ok(named);
+        }
+        first.get_or_insert(named);
+    }
+    Ok(first.expect("at least one mesh is read back"))
+}
+
+/// What is told of a run.
+struct Summary {
+    name: String,
+    points: usize,
+    prediction: Option<Prediction>,
+    mesh: Option<(usize, usize)>,
+    check: Option<(String, Report)>,
+    written: Vec<PathBuf>,
+    far_field: Option<Farfield>,
+}
+
+impl Summary {
+    fn of(name: &str, domain: &Domain, far_field: Option<Farfield>) -> Self {
+        Self {
+            name: name.to_owned(),
+            points: domain.points.len(),
+            prediction: None,
+            mesh: None,
+            check: None,
+            written: Vec::new(),
+            far_field,
+        }
+    }
+
+    fn note(&mut self, meshed: &Meshed) {
+        self.prediction = Some(meshed.prediction);
+        self.mesh = Some((meshed.mesh.points.len(), meshed.mesh.triangles.len()));
+    }
+
+    fn exit(&self) -> u8 {
+        self.check.as_ref().map_or(EXIT_HOLDS, |(_, report)| report.exit_code())
+    }
+
+    fn outcome(self, laps: Vec<(String, Duration)>, timings: bool) -> Outcome {
+        Outcome { exit: self.exit(), text: self.text(&laps, timings), json: self.json(&laps) }
+    }
+
+    fn text(&self, laps: &[(String, Duration)], timings: bool) -> String {
+        let mut lines = vec![self.heading()];
+        let mut line = |label: &str, text: String| lines.push(format!("  {label:<11}{text}"));
+        if let Some(prediction) = self.prediction {
+            line("predicted", format!("{} triangles", count(prediction.triangles as u64)));
+        }
+        if let Some((points, triangles)) = self.mesh {
+            let [triangles, points] = [triangles, points].map(|n| count(n as u64));
+            line("meshed", format!("{triangles} triangles, {points} points"));
+        }
+        match &self.check {
+            Some((name, report)) => {
+                if let Some(figures) = Figures::of(report) {
+                    line("quality", figures.to_string());
+                }
+                line("check", verdict::sentence(report, name));
+            }
+            None if self.mesh.is_some() => line("check", "left out (--no-check)".into()),
+            None => {}
+        }
+        if timings {
+            let each: Vec<String> =
+                laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
+            line("time", each.join(", "));
+        }
+        let total: Duration = laps.iter().map(|(_, lap)| *lap).sum();
+        line("total", time(total));
+        if !self.written.is_empty() {
+            let names: Vec<String> =
+                self.written.iter().map(|path| path.display().to_string()).collect();
+            line("written", names.join(", "));
+        }
+        if self.exit() != EXIT_HOLDS {
+            line("written", "nothing: the mesh did not pass its check".into());
+            lines.extend(self.check.iter().map(|(name, report)| verdict::findings(report, name)));
+        }
+        lines.join("\n")
+    }
+
+    fn heading(&self) -> String {
+        let far = self.far_field.map_or(String::new(), |far| {
+            format!(", far field of {} chords with {} points", far.radius, far.points)
+        });
+        format!("{}: {} points{far}", self.name, count(self.points as u64))
+    }
+
+    fn json(&self, laps: &[(String, Duration)]) -> Value {
+        let verdict = match &self.check {
+            Some((_, report)) if report.passed() => "passed",
+            Some(_) => "failed",
+            None => "not-checked",
+        };
+        let times: serde_json::Map<String, Value> =
+            laps.iter().map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64()))).collect();
+        let written: Vec<String> = self
+            .written
+            .iter()
+            .filter(|path| !is_dash(path))
+            .map(|path| path.display().to_string())
+            .collect();
+        json!({
+            "schema": "trigrade-mesh/1",
+            "verdict": verdict,
+            "domain": self.name,
+            "predicted": self.prediction.map(|p| p.triangles),
+            "points": self.mesh.map(|(points, _)| points),
+            "triangles": self.mesh.map(|(_, triangles)| triangles),
+            "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
+            "written": written,
+            "seconds": times,
+            "check": self.check.as_ref().map(|(_, report)| report),
+        })
+    }
+}
+
+/// A count with thin groups of thousands: 4 346.
+#[must_use]
+pub fn count(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 && digits.len() > 4 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_grouped() {
+        for (n, text) in
+            [(0, "0"), (999, "999"), (4346, "4346"), (12345, "12,345"), (1234567, "1,234,567")]
+        {
+            assert_eq!(count(n), text);
+        }
+    }
+
+    // spec: K1
+    #[test]
+    fn a_limit_is_exit_2_and_an_empty_domain_exit_1() {
+        let many = MeshError::TooMany { predicted: 1e9, stopped: true, limit: 10 };
+        assert_eq!(no_mesh(&many).exit, 2);
+        let empty = MeshError::Background(crate::background::BackgroundError::Empty);
+        assert_eq!(no_mesh(&empty).exit, EXIT_FINDINGS);
+    }
+}

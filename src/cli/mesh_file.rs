@@ -1,0 +1,204 @@
+//! Mesh files: reading with their companions, writing any form, pictures included.
+
+use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
+use super::forms::{OutputFile, OutputForm, mesh_to_read};
+use super::input::{Input, load};
+use super::output::Outputs;
+use crate::draw::{self, DrawError, Layer, Panel, View};
+use crate::format::{
+    At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
+    write_companion, write_mesh,
+};
+use crate::mesh::MeshData;
+use std::io;
+use std::path::Path;
+
+/// Reads a mesh and the files that belong to it.
+///
+/// # Errors
+/// Exit code 2: the file cannot be read, its form is not told, or it is malformed.
+pub fn load_mesh(path: &Path, said: Option<&str>) -> Result<(Input, MeshData), Failure> {
+    let main = load(&main_of(path, said))?;
+    let form = mesh_to_read(path, said, &main.bytes)?;
+    let companions: Vec<(Companion, Vec<u8>)> = match &main.path {
+        Some(path) => form.companions().iter().filter_map(|&c| beside(path, c)).collect(),
+        None => Vec::new(),
+    };
+    let mesh = parse(&main.bytes, form, &companions).map_err(|e| malformed(&main.name, &e))?;
+    Ok((main, mesh))
+}
+
+/// `a.node` names the pair whose main file is `a.ele`.
+fn main_of(path: &Path, said: Option<&str>) -> std::path::PathBuf {
+    let is_node = said.is_none() && path.extension().is_some_and(|e| e == "node");
+    if is_node { path.with_extension("ele") } else { path.to_owned() }
+}
+
+/// A companion's bytes, if the file is there; the reader says which ones it cannot do without.
+fn beside(main: &Path, companion: Companion) -> Option<(Companion, Vec<u8>)> {
+    let mut paths = vec![main.with_extension(companion.extension())];
+    if companion == Companion::Nodes {
+        paths.push(main.with_extension("poly"));
+    }
+    paths.iter().find_map(|path| Some((companion, load(path).ok()?.bytes)))
+}
+
+/// Reads a mesh from bytes.
+///
+/// # Errors
+/// The first fault.
+pub fn parse(
+    bytes: &[u8],
+    form: MeshForm,
+    companions: &[(Companion, Vec<u8>)],
+) -> Result<MeshData, ReadError> {
+    let of = |wanted| {
+        companions.iter().find(|(companion, _)| *companion == wanted).map(|(_, b)| b.as_slice())
+    };
+    let options = ReadOptions {
+        nodes: of(Companion::Nodes),
+        edges: of(Companion::Edges),
+        ..ReadOptions::default()
+    };
+    read_mesh(bytes, form, &options)
+}
+
+/// A reader's error as a complaint about the file `name`.
+#[must_use]
+pub fn malformed(name: &str, error: &ReadError) -> Failure {
+    let file = error.file.trim_end_matches([':', ' ']);
+    let name = if file.is_empty() { name.to_owned() } else { beside_name(name, file) };
+    let place = match error.at {
+        At::Line(line) => format!("{name}:{line}"),
+        At::Byte(byte) => format!("{name} (byte {byte})"),
+    };
+    let diagnostic = Diagnostic::new(error.fault.to_string()).rule(error.rule()).at(place);
+    Failure { exit: EXIT_CANNOT_RUN, diagnostics: vec![diagnostic] }
+}
+
+/// The companion's name, from that of the main file and the companion's extension.
+fn beside_name(main: &str, extension: &str) -> String {
+    let path = Path::new(main).with_extension(extension.trim_start_matches('.'));
+    path.display().to_string()
+}
+
+/// Writes one file of an output into its stage.
+///
+/// # Errors
+/// Exit code 2 when the mesh cannot be written in this form, or the disk refuses.
+pub fn write(
+    outputs: &mut Outputs,
+    index: usize,
+    file: &OutputFile,
+    mesh: MeshView<'_>,
+    drawing: &Drawing<'_>,
+) -> Result<(), Failure> {
+    // What the form refuses must not be told as a fault of the disk.
+    let mut refusal = None;
+    let written = outputs.fill(index, |out| {
+        let outcome = match (file.form, file.companion) {
+            (OutputForm::Mesh(..), Some(companion)) => {
+                write_companion(mesh, companion, out).map_err(Refusal::from)
+            }
+            (OutputForm::Mesh(form, options), None) => {
+                write_mesh(mesh, form, options, out).map_err(Refusal::from)
+            }
+            (OutputForm::Svg, _) => drawing
+                .svg()
+                .map_err(Refusal::from)
+                .and_then(|svg| out.write_all(svg.as_bytes()).map_err(Refusal::Disk)),
+            (OutputForm::Png, _) => drawing
+                .png()
+                .map_err(Refusal::from)
+                .and_then(|png| out.write_all(&png).map_err(Refusal::Disk)),
+        };
+        match outcome {
+            Ok(()) => Ok(()),
+            Err(Refusal::Disk(error)) => Err(error),
+            Err(Refusal::Form(message)) => {
+                refusal = Some(message);
+                Ok(())
+            }
+        }
+    });
+    match refusal {
+        Some(message) => {
+            Err(Failure::cannot_run(Diagnostic::new(message).at(file.path.display())))
+        }
+        None => written,
+    }
+}
+
+/// Why a file was not written.
+enum Refusal {
+    /// The disk.
+    Disk(io::Error),
+    /// The form or the picture.
+    Form(String),
+}
+
+impl From<WriteError> for Refusal {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io(error) => Self::Disk(error),
+            other => Self::Form(other.to_string()),
+        }
+    }
+}
+
+impl From<DrawError> for Refusal {
+    fn from(error: DrawError) -> Self {
+        Self::Form(error.to_string())
+    }
+}
+
+/// What a picture of a mesh shows.
+#[derive(Clone, Debug)]
+pub struct Drawing<'a> {
+    /// The mesh.
+    pub mesh: &'a MeshData,
+    /// A line above it.
+    pub title: String,
+    /// The part to draw; `None` draws everything.
+    pub view: Option<View>,
+    /// Width in CSS pixels.
+    pub width: f64,
+}
+
+impl<'a> Drawing<'a> {
+    /// All of `mesh`.
+    #[must_use]
+    pub fn of(mesh: &'a MeshData, title: impl Into<String>) -> Self {
+        Self { mesh, title: title.into(), view: None, width: draw::Options::default().width }
+    }
+
+    fn options(&self) -> draw::Options {
+        draw::Options { width: self.width, ..draw::Options::default() }
+    }
+
+    fn panel<'b>(&'b self, layer: &'b Layer) -> Panel<'b> {
+        let panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
+        match self.view {
+            Some(view) => panel.cropped(view),
+            None => panel,
+        }
+    }
+
+    /// As SVG, coloured by R / 2r.
+    ///
+    /// # Errors
+    /// A view or page that cannot be drawn.
+    pub fn svg(&self) -> Result<String, DrawError> {
+        let layer = Layer::radius_ratio(self.mesh);
+        draw::svg(&[self.panel(&layer)], &self.options())
+    }
+
+    /// As PNG, coloured by R / 2r.
+    ///
+    /// # Errors
+    /// A view or page that cannot be drawn.
+    pub fn png(&self) -> Result<Vec<u8>, DrawError> {
+        let layer = Layer::radius_ratio(self.mesh);
+        draw::png(&[self.panel(&layer)], &self.options())
+    }
+}

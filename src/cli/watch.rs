@@ -1,0 +1,96 @@
+//! Watching the mesher: a progress bar on a terminal, and the time of each stage.
+
+use super::console::Console;
+use crate::mesher::{Observer, Stage};
+use crate::size::Prediction;
+use indicatif::ProgressBar;
+use std::time::{Duration, Instant};
+
+/// The stages of a run with their times, and a bar.
+#[derive(Debug)]
+pub struct Watch {
+    laps: Vec<(String, Duration)>,
+    running: Option<(String, Instant)>,
+    bar: ProgressBar,
+}
+
+impl Watch {
+    /// Starts nothing yet.
+    #[must_use]
+    pub fn new(console: &Console) -> Self {
+        Self { laps: Vec::new(), running: None, bar: console.bar() }
+    }
+
+    /// Ends the stage that runs, and begins the next.
+    pub fn begin(&mut self, stage: &str) {
+        self.end();
+        self.bar.set_message(stage.to_owned());
+        self.running = Some((stage.to_owned(), Instant::now()));
+    }
+
+    /// Ends the stage that runs.
+    pub fn end(&mut self) {
+        if let Some((stage, start)) = self.running.take() {
+            self.laps.push((stage, start.elapsed()));
+        }
+    }
+
+    /// Ends all, and clears the bar.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<(String, Duration)> {
+        self.end();
+        self.bar.finish_and_clear();
+        self.laps
+    }
+}
+
+impl Observer for Watch {
+    fn stage(&mut self, stage: Stage) {
+        self.begin(&stage.to_string());
+    }
+
+    fn predicted(&mut self, prediction: Prediction) -> bool {
+        self.bar.set_length(prediction.triangles as u64);
+        true
+    }
+
+    fn progress(&mut self, triangles: usize) -> bool {
+        self.bar.set_position(triangles as u64);
+        true
+    }
+}
+
+/// A time in the unit that suits it, with three digits.
+#[must_use]
+pub fn time(duration: Duration) -> String {
+    let seconds = duration.as_secs_f64();
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s => format!("{s:.2} s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::arguments::Global;
+
+    #[test]
+    fn stages_are_timed_in_their_order() {
+        let mut watch = Watch::new(&Console::new(&Global::default(), false));
+        watch.begin("read");
+        watch.stage(Stage::Front);
+        watch.end();
+        watch.begin("write");
+        let names: Vec<String> = watch.finish().into_iter().map(|(stage, _)| stage).collect();
+        assert_eq!(names, ["read", "front", "write"]);
+    }
+
+    #[test]
+    fn times_have_a_unit_that_suits_them() {
+        for (micros, text) in [(12, "12 µs"), (3_400, "3.4 ms"), (2_500_000, "2.50 s")] {
+            assert_eq!(time(Duration::from_micros(micros)), text);
+        }
+    }
+}
