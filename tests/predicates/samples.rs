@@ -78,6 +78,15 @@ fn cocircular(random: &mut Random) -> Quad {
     })
 }
 
+/// Cocircular integers of up to 50 bits, so that every width of arithmetic meets its limit, one of them
+/// off by at most one.
+fn any_width(random: &mut Random) -> Quad {
+    let factor = (random.next() >> (21 + random.below(43))) as f64;
+    let nudge = random.below(3) as f64 - 1.0;
+    let [a, b, c, d] = cocircular(random).map(|p| Point2::new(p.x * factor, p.y * factor));
+    [a, b, c, Point2::new(d.x + nudge, d.y)]
+}
+
 fn near_collinear(random: &mut Random) -> Quad {
     let (slope, offset) = (random.coordinate(), random.coordinate());
     std::array::from_fn(|_| {
@@ -131,6 +140,7 @@ pub fn every_class(random: &mut Random) -> Vec<(&'static str, Quad)> {
         found.push((name, tenths));
         found.push((name, scaled(shaken(random, tenths), random.below(2090) as i32 - 1074)));
     }
+    found.push(("any width", any_width(random)));
     found.push(("ulp cloud", ulp_cloud(random)));
     found.push(("extremes", extremes(random)));
     found.push(("any float", each(|| random.finite())));
