@@ -4,6 +4,8 @@ use trigrade::point::Point2;
 
 pub type Quad = [Point2; 4];
 
+type Class = fn(&mut Random) -> Quad;
+
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Random(u64);
 
@@ -124,7 +126,7 @@ fn extremes(random: &mut Random) -> Quad {
 /// Names and members of one sample of each class: plain, shaken by ulps and scaled anywhere.
 pub fn every_class(random: &mut Random) -> Vec<(&'static str, Quad)> {
     let mut found = Vec::new();
-    let near_degenerate: [(&'static str, fn(&mut Random) -> Quad); 5] = [
+    let near_degenerate: [(&'static str, Class); 5] = [
         ("grid", grid),
         ("circle", circle),
         ("cocircular", cocircular),
