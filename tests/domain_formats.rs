@@ -535,7 +535,8 @@ prop_compose! {
         }
         for (list, role) in loops {
             let (mut vertices, mut markers): (Vec<u32>, Vec<i32>) = list.into_iter().unzip();
-            if vertices.len() > 1 && vertices.first() == vertices.last() {
+            // Such a closing vertex is dropped by convention: the one thing that does not return.
+            while vertices.len() > 1 && vertices.first() == vertices.last() {
                 vertices.pop();
                 markers.pop();
             }
