@@ -1,5 +1,16 @@
 //! What a check answers: findings with places and measured values, counts, statistics, verdict.
 
+mod github;
+mod gitlab;
+mod json;
+mod junit;
+mod render;
+mod sarif;
+mod tap;
+mod text;
+
+pub use render::{Form, Subject, UnknownForm, render};
+
 use super::gate::GateResult;
 use super::id::Id;
 use super::quality::Quality;

@@ -185,3 +185,114 @@ fn push(out: &mut String, id: &str, bytes: Vec<u8>) {
     BASE64_STANDARD.encode_string(&bytes, out);
     out.push_str("</script>\n");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Better;
+    use crate::mesh::{MarkedEdge, NO_POINT};
+
+    fn mesh() -> MeshData {
+        MeshData {
+            points: vec![
+                [0.1, -0.0, 0.0],
+                [4.0, 0.0, 0.0],
+                [4.0, f64::NAN, 0.0],
+                [1e300, 3.0, 0.0],
+            ],
+            triangles: vec![[0, 1, 2], [1, 3, NO_POINT]],
+            edges: vec![MarkedEdge { vertices: [0, 1], marker: -3 }],
+            ..MeshData::default()
+        }
+    }
+
+    /// The bytes of a data element.
+    fn decoded(html: &str, id: &str) -> Option<Vec<u8>> {
+        let (_, rest) =
+            html.split_once(&format!("<script type=\"text/plain\" id=\"data-{id}\">"))?;
+        BASE64_STANDARD.decode(rest.split_once("</script>")?.0).ok()
+    }
+
+    fn meta_of(html: &str) -> serde_json::Value {
+        let (_, rest) = html.split_once("id=\"meta\">").expect("facts");
+        serde_json::from_str(rest.split_once("</script>").expect("an end").0).expect("JSON")
+    }
+
+    // spec: G10
+    #[test]
+    fn arrays_are_carried_bit_for_bit() {
+        let mesh = mesh();
+        let html = html(&Viewer::new("m", &mesh)).expect("fits");
+        let bits: Vec<u8> =
+            mesh.points.iter().flat_map(|p| [p[0], p[1]]).flat_map(f64::to_le_bytes).collect();
+        assert_eq!(decoded(&html, "points"), Some(bits));
+        let corners: Vec<u8> =
+            mesh.triangles.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        assert_eq!(decoded(&html, "triangles"), Some(corners));
+        assert_eq!(decoded(&html, "edges"), Some(vec![0, 0, 0, 0, 1, 0, 0, 0]));
+        assert_eq!(decoded(&html, "numbers"), None);
+        assert_eq!(meta_of(&html)["dimension"], 2);
+    }
+
+    #[test]
+    fn points_out_of_the_plane_make_it_a_mesh_in_space() {
+        let mut mesh = mesh();
+        mesh.points[3][2] = 5.0;
+        let html = html(&Viewer::new("m", &mesh)).expect("fits");
+        assert_eq!(meta_of(&html)["dimension"], 3);
+        assert_eq!(decoded(&html, "points").map(|b| b.len()), Some(4 * 3 * 8));
+    }
+
+    // spec: G11
+    #[test]
+    fn the_document_loads_nothing() {
+        let mesh = mesh();
+        let html = html(&Viewer::new("m", &mesh)).expect("fits").to_lowercase();
+        let loaders =
+            ["http:", "https:", "src=", "href=", "@import", "url(", "fetch(", "xmlhttp", "import("];
+        for loader in loaders {
+            assert!(!html.contains(loader), "{loader}");
+        }
+    }
+
+    #[test]
+    fn no_text_can_break_out_of_its_place() {
+        let mesh = mesh();
+        let nasty = "</script><script>alert(1)</script><!-- \" & {{data}} {{js}}";
+        let highlights = [Highlight { label: nasty.into(), ..Highlight::default() }];
+        let layers = [Layer::new(nasty, vec![1.0, 2.0], Better::Low)];
+        let viewer =
+            Viewer { highlights: &highlights, layers: &layers, ..Viewer::new(nasty, &mesh) };
+        let html = html(&viewer).expect("fits");
+        assert!(!html.contains("<script>alert") && !html.contains("<!--"));
+        let meta = meta_of(&html);
+        assert_eq!(meta["title"], nasty);
+        assert_eq!(meta["highlights"][0]["label"], nasty);
+        assert_eq!(meta["layers"][0]["name"], nasty);
+        let plain = super::html(&Viewer::new("", &mesh)).expect("fits");
+        let scripts = |html: &str| html.matches("<script").count();
+        assert_eq!(scripts(&html), scripts(&plain) + 1, "one more: the layer's values");
+    }
+
+    // spec: G2
+    #[test]
+    fn layers_and_size_fields_that_do_not_fit_are_refused() {
+        let mesh = mesh();
+        let layers = [Layer::new("area", vec![1.0], Better::Low)];
+        let error = html(&Viewer { layers: &layers, ..Viewer::new("m", &mesh) });
+        assert!(matches!(error, Err(DrawError::ValueCount { values: 1, triangles: 2, .. })));
+        let background = Some(Background { mesh: &mesh, spacing: &[1.0] });
+        let error = html(&Viewer { background, ..Viewer::new("m", &mesh) });
+        assert_eq!(error, Err(DrawError::SpacingCount { values: 1, points: 4 }));
+    }
+
+    // spec: G5
+    #[test]
+    fn the_same_viewer_gives_the_same_bytes() {
+        let mesh = mesh();
+        let make = || html(&Viewer::new("m", &mesh)).expect("fits");
+        assert_eq!(make(), make());
+        let empty = MeshData::default();
+        assert!(html(&Viewer::new("empty", &empty)).is_ok());
+    }
+}

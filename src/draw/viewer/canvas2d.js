@@ -1,67 +1,121 @@
-// Drawing without WebGL: polygons on a plain canvas, back to front for meshes in space.
+// Drawing without WebGL: triangles are filled row by row into an image, so that the time goes with
+// the pixels and a million small triangles are no harder than a few large ones.
 
 function canvasRenderer(canvas) {
   const context = canvas.getContext("2d", { alpha: false });
-  let shades = new Uint8Array(count), colours = [];
+  let shades = new Uint8Array(count), colours = [], image = null, pixels = null, depths = null;
   const x = new Float64Array(points.n), y = new Float64Array(points.n), z = new Float64Array(points.n);
 
   function place(dots) {
     for (let v = 0; v < points.n; v++) {
       const p = projectPoint(v);
-      x[v] = p[0] * dots; y[v] = p[1] * dots; z[v] = p[2];
+      x[v] = p[0] * dots; y[v] = p[1] * dots; z[v] = p[2] * camera.zoom * dots;
     }
   }
 
-  /** Triangles that touch the canvas, far ones first in space. */
-  function visible(frame) {
-    const out = [];
+  function clear() {
+    if (!image || image.width !== canvas.width || image.height !== canvas.height) {
+      image = context.createImageData(canvas.width, canvas.height);
+      pixels = new Uint32Array(image.data.buffer);
+      depths = spatial ? new Float32Array(pixels.length) : null;
+    }
+    pixels.fill(0xffffffff);
+    if (depths) depths.fill(-Infinity);
+  }
+
+  // The triangle in hand: signed distances to its sides are a x + b y + c, positive inside.
+  const a = new Float64Array(3), b = new Float64Array(3), c = new Float64Array(3), corner = new Uint32Array(3);
+
+  /** Sets up a triangle; returns its signed double area, 0 if there is nothing to fill. */
+  function take(t) {
+    for (let i = 0; i < 3; i++) corner[i] = triangles[3 * t + i];
+    const [p, q, r] = corner;
+    if (Math.max(x[p], x[q], x[r]) < 0 || Math.min(x[p], x[q], x[r]) > canvas.width) return 0;
+    if (Math.max(y[p], y[q], y[r]) < 0 || Math.min(y[p], y[q], y[r]) > canvas.height) return 0;
+    const area = (x[q] - x[p]) * (y[r] - y[p]) - (x[r] - x[p]) * (y[q] - y[p]);
+    const sign = area < 0 ? -1 : 1;
+    for (let i = 0; i < 3; i++) {
+      const from = corner[(i + 1) % 3], to = corner[(i + 2) % 3];
+      const length = Math.hypot(x[to] - x[from], y[to] - y[from]) || 1;
+      a[i] = (-sign * (y[to] - y[from])) / length;
+      b[i] = (sign * (x[to] - x[from])) / length;
+      c[i] = -(a[i] * x[from] + b[i] * y[from]);
+    }
+    return area;
+  }
+
+  /** Colour of triangle t: its shade, dimmed by slope in space, marked when just laid. */
+  function colourOf(t, area, fresh) {
+    let [red, green, blue] = colours[shades[t]];
+    if (fresh) [red, green, blue] = [213, 94, 0];
+    if (!spatial) return [red, green, blue];
+    const [p, q, r] = corner;
+    const nx = (y[q] - y[p]) * (z[r] - z[p]) - (z[q] - z[p]) * (y[r] - y[p]);
+    const ny = (z[q] - z[p]) * (x[r] - x[p]) - (x[q] - x[p]) * (z[r] - z[p]);
+    const light = 0.62 + 0.38 * Math.abs(area / (Math.hypot(nx, ny, area) || 1));
+    return [red * light, green * light, blue * light];
+  }
+
+  /** Fills the pixels whose centres lie in the triangle; `ink` is the darkness of its edges. */
+  function fill([red, green, blue], ink, dots, hatched, dz) {
+    const top = Math.max(0, Math.ceil(Math.min(y[corner[0]], y[corner[1]], y[corner[2]]) - 0.5));
+    const bottom = Math.min(canvas.height - 1, Math.floor(Math.max(y[corner[0]], y[corner[1]], y[corner[2]]) - 0.5));
+    for (let row = top; row <= bottom; row++) {
+      let left = 0, right = canvas.width - 1;
+      for (let i = 0; i < 3; i++) {
+        const rest = b[i] * (row + 0.5) + c[i];
+        if (a[i] > 0) left = Math.max(left, Math.ceil(-rest / a[i] - 0.5));
+        else if (a[i] < 0) right = Math.min(right, Math.floor(-rest / a[i] - 0.5));
+        else if (rest < 0) right = -1;
+      }
+      for (let column = left; column <= right; column++) {
+        const at = row * canvas.width + column, px = column + 0.5, py = row + 0.5;
+        if (depths) {
+          const depth = dz[0] * px + dz[1] * py + dz[2];
+          if (!(depth > depths[at])) continue;
+          depths[at] = depth;
+        }
+        const near = Math.min(a[0] * px + b[0] * py + c[0], a[1] * px + b[1] * py + c[1], a[2] * px + b[2] * py + c[2]);
+        const keep = 1 - ink * Math.max(0, 1 - near / (0.9 * dots));
+        const stripe = hatched && (column + row) % (9 * dots) < 2.5 * dots;
+        const [r, g, bl] = stripe ? [194, 24, 91] : [red, green, blue];
+        pixels[at] = 0xff000000 | ((bl * keep) << 16) | ((g * keep) << 8) | (r * keep);
+      }
+    }
+  }
+
+  /** Depth as a plane over the pixels. */
+  function depthPlane(area) {
+    const [p, q, r] = corner;
+    const u = ((z[q] - z[p]) * (y[r] - y[p]) - (z[r] - z[p]) * (y[q] - y[p])) / area;
+    const v = ((x[q] - x[p]) * (z[r] - z[p]) - (x[r] - x[p]) * (z[q] - z[p])) / area;
+    return [u, v, z[p] - u * x[p] - v * y[p]];
+  }
+
+  function drawTriangles(frame, fresh, dots, wire) {
     for (let t = 0; t < frame; t++) {
-      if (!drawable[t]) continue;
-      const a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
-      if (Math.max(x[a], x[b], x[c]) < 0 || Math.min(x[a], x[b], x[c]) > canvas.width) continue;
-      if (Math.max(y[a], y[b], y[c]) < 0 || Math.min(y[a], y[b], y[c]) > canvas.height) continue;
-      out.push(t);
-    }
-    const depth = (t) => z[triangles[3 * t]] + z[triangles[3 * t + 1]] + z[triangles[3 * t + 2]];
-    if (spatial) out.sort((s, t) => depth(s) - depth(t));
-    else out.sort((s, t) => shades[s] - shades[t]);
-    return out;
-  }
-
-  function trace(t) {
-    const a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
-    context.moveTo(x[a], y[a]);
-    context.lineTo(x[b], y[b]);
-    context.lineTo(x[c], y[c]);
-    context.closePath();
-  }
-
-  function drawTriangles(list, dots, wire) {
-    const crowded = list.length > (canvas.width * canvas.height) / 60;
-    let i = 0;
-    while (i < list.length) {
-      // One path for each run of one shade; in space each triangle hides what is behind it.
-      const shade = shades[list[i]];
-      context.beginPath();
-      do trace(list[i++]); while (!spatial && i < list.length && shades[list[i]] === shade);
-      const [r, g, b] = colours[shade];
-      context.fillStyle = context.strokeStyle = `rgb(${r},${g},${b})`;
-      context.lineWidth = 0.7 * dots;
-      context.fill();
-      context.stroke();
-      if (wire && !crowded) { context.strokeStyle = "#101114a0"; context.lineWidth = 0.5 * dots; context.stroke(); }
+      const area = drawable[t] ? take(t) : 0;
+      if (area === 0) continue;
+      const [p, q, r] = corner;
+      const longest = Math.max(Math.abs(x[q] - x[p]), Math.abs(x[r] - x[p]), Math.abs(y[q] - y[p]), Math.abs(y[r] - y[p]));
+      const height = Math.abs(area) / longest / dots;
+      const ink = !wire ? 0 : height < 3 ? 0.11 : Math.min(0.75, 0.3 + height / 50);
+      // On the screen y points down: a counterclockwise triangle has a negative area.
+      const colour = colourOf(t, area, frame < count && frame - 1 - t < fresh);
+      fill(colour, ink, dots, !spatial && area > 0, spatial && depthPlane(area));
     }
   }
 
   function drawLines(dots, { of, list, width, ink }) {
     context.beginPath();
     for (let i = 0; i < list.length; i += 2) {
-      const a = project(unitOf(of, list[i])), b = project(unitOf(of, list[i + 1]));
-      context.moveTo(a[0] * dots, a[1] * dots);
-      context.lineTo(b[0] * dots, b[1] * dots);
+      const p = project(unitOf(of, list[i])), q = project(unitOf(of, list[i + 1]));
+      context.moveTo(p[0] * dots, p[1] * dots);
+      context.lineTo(q[0] * dots, q[1] * dots);
     }
     context.strokeStyle = `rgb(${ink.join()})`;
     context.lineWidth = width * dots;
+    context.lineCap = "round";
     context.stroke();
   }
 
@@ -69,14 +123,12 @@ function canvasRenderer(canvas) {
     kind: "canvas",
     setShades(of) { shades = of; },
     setPalette(list) { colours = list; },
-    draw({ dots, wire, frame, moving, lines }) {
-      context.fillStyle = "#fff";
-      context.fillRect(0, 0, canvas.width, canvas.height);
+    finish() {},
+    draw({ dots, wire, frame, fresh, lines }) {
       place(dots);
-      const list = visible(frame);
-      // A picture in motion shows the outline alone where the triangles would hold it up.
-      if (!(moving && list.length > 60000)) drawTriangles(list, dots, wire);
-      context.lineJoin = context.lineCap = "round";
+      clear();
+      drawTriangles(frame, fresh, dots, wire);
+      context.putImageData(image, 0, 0);
       for (const set of lines) drawLines(dots, set);
     },
   };

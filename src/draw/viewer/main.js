@@ -34,9 +34,29 @@ function lineSets() {
   return sets;
 }
 
+/** What the last full drawing took, in ms, and the camera it was made with. */
+let cost = 0, drawn = null;
+
+/** Moves the last drawing along with the camera, where a new one would take too long. */
+function carryAlong() {
+  const slow = cost > 60 && state.moving > 0 && drawn && !spatial;
+  if (!slow) { scene.style.transform = ""; return false; }
+  const f = camera.zoom / drawn.zoom, [x, y] = project(drawn.centre);
+  scene.style.transform = `translate(${x - camera.width / 2}px, ${y - camera.height / 2}px) scale(${f})`;
+  return true;
+}
+
+function drawScene() {
+  const start = performance.now(), fresh = Math.max(1, Math.round(count / 150));
+  renderer.draw({ dots, wire: $("wire").checked, frame: state.frame, fresh, lines: lineSets() });
+  drawn = { centre: [...camera.centre], zoom: camera.zoom };
+  if (state.moving || state.playing) return;
+  renderer.finish();
+  cost = performance.now() - start;
+}
+
 function paint() {
-  const fresh = Math.max(1, Math.round(count / 150));
-  renderer.draw({ dots, wire: $("wire").checked, frame: state.frame, fresh, moving: state.moving > 0, lines: lineSets() });
+  if (!carryAlong()) drawScene();
   pen.setTransform(dots, 0, 0, dots, 0, 0);
   pen.clearRect(0, 0, camera.width, camera.height);
   if (background && $("spacing").checked) paintSpacing();

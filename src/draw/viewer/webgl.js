@@ -185,6 +185,8 @@ function webglRenderer(canvas) {
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, data);
       for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     },
+    /** Waits until what was drawn is there. */
+    finish() { gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
     draw({ dots, wire, frame, fresh, lines }) {
       const far = Math.max(...camera.centre.map((c, k) => Math.abs(c - origin[k]))) * camera.zoom;
       if (far > 1 << 19) { origin = [...camera.centre]; upload(); }
