@@ -17,6 +17,7 @@
 
 mod candidate;
 mod cavity;
+mod fan;
 mod queue;
 mod vertex;
 
@@ -25,6 +26,7 @@ use crate::size::{Base, Hint, SizeField};
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 use candidate::{Neighbours, Trial};
 use cavity::Cavity;
+use fan::Fan;
 use queue::Queue;
 use vertex::Vertices;
 
@@ -124,6 +126,8 @@ struct Front<'a> {
     field: &'a SizeField,
     options: FrontOptions,
     stats: FrontStats,
+    /// The initial edges in an order that depends on coordinates only.
+    start_order: Vec<u32>,
 }
 
 /// Runs a front from `start` until the open region is empty.
@@ -141,6 +145,7 @@ pub fn advance(
     progress: Progress<'_>,
 ) -> Result<FrontMesh, FrontError> {
     let mut front = Front::new(start, field, options);
+    front.fan_corners();
     let mut steps = 0;
     while let Some(id) = front.queue.pop() {
         if front.edges[id as usize].alive {
@@ -184,14 +189,15 @@ impl<'a> Front<'a> {
             field,
             options,
             stats: FrontStats::default(),
+            start_order: Vec::new(),
         };
-        front.enqueue_start();
+        front.start_order = front.enqueue_start();
         front
     }
 
     /// Queues the initial edges chain by chain, each from its lexicographically smallest edge, so
     /// that the order depends on coordinates only.
-    fn enqueue_start(&mut self) {
+    fn enqueue_start(&mut self) -> Vec<u32> {
         let mut order: Vec<u32> = (0..self.edges.len() as u32).collect();
         let key = |&id: &u32| {
             let e = self.edges[id as usize].half_edge;
@@ -204,7 +210,7 @@ impl<'a> Front<'a> {
         let lengths: Vec<f64> = order.iter().map(|id| key(id)[0].distance(key(id)[1])).collect();
         self.queue.set_unit(lengths.into_iter().fold(f64::INFINITY, f64::min));
         let mut queued = vec![false; self.edges.len()];
-        for first in order {
+        for &first in &order {
             let mut id = first;
             while !queued[id as usize] {
                 queued[id as usize] = true;
@@ -212,6 +218,7 @@ impl<'a> Front<'a> {
                 id = self.next_front_edge(id);
             }
         }
+        order
     }
 
     /// The front edge that starts where this one ends, around the same open fan.
@@ -302,7 +309,7 @@ impl<'a> Front<'a> {
     }
 
     /// Makes an open half-edge a new front edge and queues it.
-    fn open_edge(&mut self, half_edge: HalfEdgeId, outer: HalfEdgeId, hint: Hint) {
+    fn open_edge(&mut self, half_edge: HalfEdgeId, outer: HalfEdgeId, hint: Hint) -> u32 {
         let edge = FrontEdge { half_edge, outer: Across::Twin(outer), hint, alive: true };
         let id = if let Some(id) = self.free_edges.pop() {
             self.edges[id as usize] = edge;
@@ -313,10 +320,12 @@ impl<'a> Front<'a> {
         };
         self.open.set_border(half_edge, id);
         self.enqueue(id);
+        id
     }
 
-    /// Inserts the trial point into its carved cavity and accepts the triangle on the base edge.
-    fn insert(&mut self, id: u32, trial: Trial, hint: Hint) {
+    /// Inserts the trial point into its carved cavity, accepts the triangle on the base edge, and
+    /// returns the two new front edges: from the base's origin, and to its destination.
+    fn insert(&mut self, id: u32, trial: Trial, hint: Hint) -> [u32; 2] {
         self.stats.inserted += 1;
         let FrontEdge { half_edge: base, outer, .. } = self.edges[id as usize];
         let p = self.vertices.push(trial.point, trial.spacing, trial.depth);
@@ -326,7 +335,66 @@ impl<'a> Front<'a> {
         for &(owner, half_edge) in self.cavity.moved_borders() {
             self.edges[owner as usize].half_edge = half_edge;
         }
-        self.open_edge(fan.from_a, t.half_edge(2), hint);
-        self.open_edge(fan.to_b, t.half_edge(1), hint);
+        let from_a = self.open_edge(fan.from_a, t.half_edge(2), hint);
+        [from_a, self.open_edge(fan.to_b, t.half_edge(1), hint)]
+    }
+
+    /// Lays fans at the corners where edges of very different length meet, before the front starts:
+    /// later its points would be in the way.
+    fn fan_corners(&mut self) {
+        if self.options.rules == Rules::Hard {
+            return;
+        }
+        for id in std::mem::take(&mut self.start_order) {
+            self.fan_at_origin(id);
+        }
+    }
+
+    /// Lays the fan at the corner where a front edge starts.
+    fn fan_at_origin(&mut self, id: u32) {
+        if !self.edges[id as usize].alive {
+            return;
+        }
+        let out = self.edges[id as usize].half_edge;
+        let before = self.previous_front_edge(id);
+        let into = self.edges[before as usize].half_edge;
+        let point = |v| self.vertices.point(v);
+        let [corner, next, last] =
+            [self.open.origin(out), self.open.dest(out), self.open.origin(into)].map(point);
+        let (long, short) = (corner.distance(next), corner.distance(last));
+        let turn = fan::angle(corner, next, last);
+        if let Some(fan) = Fan::between(long, short, turn) {
+            self.lay_fan(id, fan, corner, next, true);
+        } else if let Some(fan) = Fan::between(short, long, turn) {
+            self.lay_fan(before, fan, corner, last, false);
+        }
+    }
+
+    /// Lays the triangles of a fan but the last, which the short edge closes, as far as they fit.
+    fn lay_fan(&mut self, id: u32, fan: Fan, corner: Point2, end: Point2, outgoing: bool) {
+        let (mut id, mut end) = (id, end);
+        for _ in 1..fan.triangles {
+            let FrontEdge { half_edge: base, mut hint, .. } = self.edges[id as usize];
+            end = fan.next(corner, end, outgoing);
+            let length = self.vertices.spacing(self.open.origin(base));
+            let spacing = self.field.at(end, Base { length }, &mut hint);
+            let trial = Trial::given(end, spacing);
+            if !self.admits(base, &trial) {
+                return;
+            }
+            let [from_a, to_b] = self.insert(id, trial, hint);
+            id = if outgoing { from_a } else { to_b };
+        }
+    }
+
+    /// The front edge that ends where this one starts, around the same open fan.
+    fn previous_front_edge(&self, id: u32) -> u32 {
+        let mut e = self.edges[id as usize].half_edge.prev();
+        loop {
+            match self.open.across(e) {
+                Across::Border(owner) => return owner,
+                Across::Twin(twin) => e = twin.prev(),
+            }
+        }
     }
 }

@@ -28,6 +28,13 @@ pub(super) struct Trial {
     score: f64,
 }
 
+impl Trial {
+    /// A point on the boundary's own behalf, whatever its score.
+    pub(super) fn given(point: Point2, spacing: f64) -> Self {
+        Self { point, spacing, depth: 0.0, score: 1.0 }
+    }
+}
+
 /// At most three trials, best first.
 pub(super) type Trials = [Option<Trial>; 3];
 

@@ -49,8 +49,11 @@ pub(super) struct Fan {
 const REACH: f64 = 2.0;
 /// A new point keeps this fraction of its spacing from every other vertex it sees.
 const CLEARANCE_VERTEX: f64 = 0.66;
-/// And this fraction from every front edge.
-const CLEARANCE_EDGE: f64 = 0.4;
+/// And from every front edge this fraction, squared, of the edge's length, but at least the first
+/// and at most the second of the given fractions of its own spacing: beside an edge much longer than
+/// the spacing a point that is too near makes a needle, one that is too far starves the front.
+const CLEARANCE_LENGTH_SQ: f64 = 0.3 * 0.3;
+const CLEARANCE_EDGE: [f64; 2] = [0.4, 0.8];
 
 impl Cavity {
     /// Finds the cavity of `p` that contains the open triangle on `base`; `false` when that
@@ -142,7 +145,11 @@ impl Cavity {
     /// arithmetic: this ranks, `carve` has decided.
     pub(super) fn is_clear(&self, vertices: &Vertices, trial: &Trial) -> bool {
         let vertex_sq = (CLEARANCE_VERTEX * trial.spacing).powi(2);
-        let edge_sq = (CLEARANCE_EDGE * trial.spacing).powi(2);
+        let edge_sq = |a: Point2, b: Point2| {
+            let h_sq = trial.spacing.powi(2);
+            let [low, high] = CLEARANCE_EDGE.map(|fraction| fraction * fraction * h_sq);
+            (CLEARANCE_LENGTH_SQ * a.distance_sq(b)).clamp(low, high)
+        };
         let ends = self.ring[0];
         self.ring[1..].iter().all(|edge| {
             let origin = vertices.point(edge.origin);
@@ -150,7 +157,7 @@ impl Cavity {
             (is_end || origin.distance_sq(trial.point) >= vertex_sq)
                 && (matches!(edge.across, Across::Twin(_))
                     || segment_distance_sq(origin, vertices.point(edge.dest), trial.point)
-                        >= edge_sq)
+                        >= edge_sq(origin, vertices.point(edge.dest)))
         })
     }
 
