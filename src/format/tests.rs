@@ -1,6 +1,8 @@
 //! Laws that hold for every form: what is written reads back the same, and no bytes do harm.
 
+mod faults;
 mod hostile;
+mod numbers;
 mod round_trip;
 mod samples;
 

@@ -430,11 +430,11 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     for index in 0..cells {
         out.integers(&[if index < triangles.len() { TRIANGLE } else { LINE } as i32])?;
     }
-    out.end(&format!("CELL_DATA {cells}\nSCALARS region int 1\nLOOKUP_TABLE default"))?;
+    out.end(&format!("CELL_DATA {cells}\nFIELD FieldData 2\nregion 1 {cells} int"))?;
     for index in 0..cells {
         out.integers(&[if index < triangles.len() { mesh.region(index, 0) } else { 0 }])?;
     }
-    out.end("SCALARS marker int 1\nLOOKUP_TABLE default")?;
+    out.end(&format!("marker 1 {cells} int"))?;
     for index in 0..cells {
         let edge = index.checked_sub(triangles.len()).map(|index| edges[index]);
         out.integers(&[edge.map_or(0, |edge| edge.marker)])?;

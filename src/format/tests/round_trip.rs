@@ -162,7 +162,9 @@ fn what_a_form_drops_is_said() {
     let view = MeshView::from(&mesh);
     for form in MeshForm::ALL.into_iter().filter(|form| form.is_written()) {
         let expected: &[&str] = match form {
-            MeshForm::Off | MeshForm::Obj | MeshForm::Stl => &["marked edges", "regions"],
+            MeshForm::Off | MeshForm::Obj | MeshForm::Ply | MeshForm::Stl => {
+                &["marked edges", "regions"]
+            }
             MeshForm::Su2 => &["regions"],
             _ => &[],
         };
