@@ -186,7 +186,7 @@ impl<'a> Decoder<'a> {
         let separate = ends && text.len() > encoded(size);
         let length = stream.decode(0, size)?;
         let length = self.check_length(&length, array, expected)?;
-        if separate && size % 3 != 0 {
+        if separate && !size.is_multiple_of(3) {
             return stream.decode(encoded(size), length).map(Cow::Owned);
         }
         let mut bytes = stream.decode(0, size + length)?;
