@@ -6,16 +6,16 @@
 //! [`MeshData::other_cells`]. Memory is bounded by the size of the input: a declared count is
 //! checked against the bytes that follow before anything is allocated.
 
-pub mod airfoil;
 mod abaqus;
+pub mod airfoil;
 mod assemble;
 mod domain_builder;
 pub mod domain_file;
 pub mod domain_json;
 mod domain_json_plain;
 mod error;
-pub mod geojson;
 mod fort14;
+pub mod geojson;
 mod medit;
 mod msh;
 mod msh22;
@@ -24,8 +24,8 @@ mod netgen_vol;
 mod node_ele;
 mod obj;
 mod off;
-pub mod poly;
 mod ply;
+pub mod poly;
 mod scalar;
 mod scan;
 mod sms_2dm;

@@ -173,7 +173,8 @@ pub fn mesh_plc(
 
     observer.stage(Stage::Improve);
     let fixed = background.points.len();
-    let improved = improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
+    let improved =
+        improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
 
     observer.stage(Stage::Collect);
     Ok(collect(laid, &background, improved, prediction, &scale))

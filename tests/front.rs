@@ -114,9 +114,13 @@ fn sketches() -> Vec<(&'static str, Sketch)> {
         ),
         (
             "comb",
-            Sketch::default().add_loop([p(-0.5, 0.0)].into_iter().chain(comb).chain([p(8.5, 0.0)]), 1),
+            Sketch::default()
+                .add_loop([p(-0.5, 0.0)].into_iter().chain(comb).chain([p(8.5, 0.0)]), 1),
         ),
-        ("jump", Sketch::default().add_loop(jump.chain([p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]), 1)),
+        (
+            "jump",
+            Sketch::default().add_loop(jump.chain([p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]), 1),
+        ),
         (
             "lattice L",
             Sketch::default().add_loop(lattice.map(|(x, y)| p(f64::from(x), f64::from(y))), 1),
@@ -253,9 +257,8 @@ fn powers_of_two_scale_the_mesh_and_nothing_else() {
     for_all(|name, sketch, options| {
         let mesh = sketch.mesh(options).mesh;
         for exponent in [-500, -30, 7, 900] {
-            let scale = |p: Point2| {
-                Point2::new(libm::scalbn(p.x, exponent), libm::scalbn(p.y, exponent))
-            };
+            let scale =
+                |p: Point2| Point2::new(libm::scalbn(p.x, exponent), libm::scalbn(p.y, exponent));
             let scaled = sketch.mapped(scale).mesh(options).mesh;
             assert_eq!(mesh.triangles, scaled.triangles, "{name} times 2^{exponent}");
             let points: Vec<Point2> = mesh.points.iter().map(|&p| scale(p)).collect();

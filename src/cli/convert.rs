@@ -89,7 +89,9 @@ fn outcome(name: &str, mesh: &MeshData, files: &[OutputFile]) -> Outcome {
     });
     let lost: String = dropped
         .filter(|(_, what)| !what.is_empty())
-        .map(|(form, what)| format!("\n  left out, for {form} has no place for it: {}", what.join(", ")))
+        .map(|(form, what)| {
+            format!("\n  left out, for {form} has no place for it: {}", what.join(", "))
+        })
         .collect();
     Outcome {
         exit: EXIT_HOLDS,

@@ -39,10 +39,13 @@ struct Case {
 
 fn cases() -> [Case; 3] {
     let defaults = Options::default();
-    let literal =
-        Options { gradation: Gradation::Mean, density: Density::AllEdges, ..defaults };
+    let literal = Options { gradation: Gradation::Mean, density: Density::AllEdges, ..defaults };
     [
-        Case { name: "graded", title: "graded, growth-limited spacing (default)", options: defaults },
+        Case {
+            name: "graded",
+            title: "graded, growth-limited spacing (default)",
+            options: defaults,
+        },
         Case { name: "literal", title: "graded, mean of all background edges", options: literal },
         Case {
             name: "afm",
@@ -174,8 +177,8 @@ fn run_case(
     watch.begin("read back");
     let (index, file, _) = &files[0];
     let name = file.path.display().to_string();
-    let data = parse(&outputs.read_back(*index)?, MeshForm::Msh, &[])
-        .map_err(|e| malformed(&name, &e))?;
+    let data =
+        parse(&outputs.read_back(*index)?, MeshForm::Msh, &[]).map_err(|e| malformed(&name, &e))?;
     watch.begin("check");
     let report = verdict::check_mesh(&data, Some(domain));
     Ok(Done { case, meshed, data, report, laps: watch.finish() })

@@ -89,7 +89,10 @@ pub fn text(report: &Report, name: &str) -> String {
     if let Some(figures) = Figures::of(report) {
         line("quality", figures.to_string());
     }
-    line("boundary", format!("{} edges, {} loops", count(facts.boundary_edges), facts.boundary_loops));
+    line(
+        "boundary",
+        format!("{} edges, {} loops", count(facts.boundary_edges), facts.boundary_loops),
+    );
     if let Some(area) = &facts.area
         && let Some(rounded) = area.rounded
     {

@@ -10,7 +10,6 @@ use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 
-
 /// The mesh under improvement, and which of its vertices are worth another look.
 pub(super) struct Smoother<'a> {
     mesh: &'a mut Triangulation,

@@ -79,8 +79,7 @@ impl Fields {
 
     fn sources(&self, spacing: &[Option<f64>]) -> Vec<Source> {
         let source = |(&at, &h): (&Point2, &Option<f64>)| h.map(|spacing| Source { at, spacing });
-        let mut sources: Vec<Source> =
-            self.points.iter().zip(spacing).filter_map(source).collect();
+        let mut sources: Vec<Source> = self.points.iter().zip(spacing).filter_map(source).collect();
         // Ties between sources go to the first: their order must not be the input's.
         sources.sort_by(|s, t| s.at.lexicographic(t.at));
         sources

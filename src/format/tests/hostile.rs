@@ -97,13 +97,13 @@ fn one_changed_byte_does_no_harm() {
 }
 
 proptest! {
-    // spec: X20
+    // spec: X32
     #[test]
     fn random_bytes_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         read_by_all(&bytes);
     }
 
-    // spec: X20
+    // spec: X32
     #[test]
     fn spliced_files_do_no_harm(way in any::<prop::sample::Index>(), cut in any::<[prop::sample::Index; 3]>()) {
         let ways = ways();

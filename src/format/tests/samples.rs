@@ -144,7 +144,7 @@ fn every_sample_cut_anywhere_is_an_error_or_a_sound_mesh() {
     }
 }
 
-// spec: X20
+// spec: X20 X32
 #[test]
 fn every_sample_with_one_byte_changed_does_no_harm() {
     for name in names() {
@@ -175,7 +175,7 @@ fn every_sample_with_one_byte_changed_does_no_harm() {
     }
 }
 
-// spec: X20
+// spec: X20 X32
 #[test]
 fn every_sample_through_every_reader_does_no_harm() {
     for name in names() {
