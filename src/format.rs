@@ -208,16 +208,17 @@ impl MeshForm {
         }
     }
 
-    /// Whether a file of this form says which edges have which marker.
+    /// Whether a file of this form, as written here, says which edges have which marker.
     #[must_use]
     pub const fn carries_edges(self) -> bool {
-        !matches!(self, Self::Off | Self::Obj | Self::Stl)
+        self.is_written() && !matches!(self, Self::Off | Self::Obj | Self::Ply | Self::Stl)
     }
 
-    /// Whether a file of this form says which region a triangle is in.
+    /// Whether a file of this form, as written here, says which region a triangle is in.
     #[must_use]
     pub const fn carries_regions(self) -> bool {
-        !matches!(self, Self::Off | Self::Obj | Self::Stl | Self::Su2 | Self::Fort14 | Self::Abaqus)
+        self.is_written()
+            && !matches!(self, Self::Off | Self::Obj | Self::Ply | Self::Stl | Self::Su2)
     }
 
     /// The files that a mesh of this form has beside its main one: the caller reads them into

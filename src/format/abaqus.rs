@@ -210,8 +210,11 @@ impl Element {
         match (Shape::of(kind), self.count) {
             (Some(Shape::Edge), 2 | 3) => mesh.edge([a, b], cell),
             (Some(Shape::Triangle), 3) => mesh.triangle([a, b, c], cell),
+            (Some(Shape::Quad), 4) if mesh.splits_quads() => {
+                mesh.quad(self.corners, cell, 0, kind);
+            }
             (Some(Shape::Quad), 4) => {
-                mesh.quad(self.corners, cell, 4, &format!("quadrilateral {kind}"))
+                mesh.other_named(format!("quadrilateral {}", kind.escape_debug()));
             }
             (Some(_), count) => {
                 let found = format!("{count} nodes");

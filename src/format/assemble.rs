@@ -20,8 +20,9 @@ pub(crate) enum Numbering {
 }
 
 impl Numbering {
-    /// The numbering of points that have `numbers`; a number given twice is the error.
-    fn of(numbers: &[i64]) -> Result<Self, i64> {
+    /// The numbering of points that have `numbers`; the index of one
+    /// whose number was given before is the error.
+    fn of(numbers: &[i64]) -> Result<Self, u32> {
         let first = numbers.iter().copied().min().unwrap_or(0);
         let last = numbers.iter().copied().max().unwrap_or(0);
         if numbers.iter().zip(first..).all(|(&number, expected)| number == expected) {
@@ -34,23 +35,23 @@ impl Numbering {
         }
     }
 
-    fn table(numbers: &[i64], first: i64, span: usize) -> Result<Self, i64> {
+    fn table(numbers: &[i64], first: i64, span: usize) -> Result<Self, u32> {
         let mut indices = vec![NO_POINT; span];
         for (index, &number) in numbers.iter().enumerate() {
             let entry = &mut indices[(number - first) as usize];
             if *entry != NO_POINT {
-                return Err(number);
+                return Err(index as u32);
             }
             *entry = index as u32;
         }
         Ok(Self::Table { first, indices })
     }
 
-    fn sorted(numbers: &[i64]) -> Result<Self, i64> {
+    fn sorted(numbers: &[i64]) -> Result<Self, u32> {
         let mut pairs: Vec<_> = numbers.iter().copied().zip(0_u32..).collect();
         pairs.sort_unstable();
         match pairs.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(pair) => Err(pair[0].0),
+            Some(pair) => Err(pair[1].1),
             None => Ok(Self::Sorted(pairs)),
         }
     }
@@ -162,8 +163,12 @@ impl Assembler {
 
     /// Ends the points of a file that numbers them: cells may follow.
     pub(crate) fn number_points(&mut self, scanner: &Scanner) -> Result<(), ReadError> {
-        self.numbering = Numbering::of(&self.numbers)
-            .map_err(|number| scanner.fail(ReadFault::Duplicate { number }))?;
+        self.numbering = Numbering::of(&self.numbers).map_err(|index| {
+            let number = self.numbers[index as usize];
+            let error = scanner.fail(ReadFault::Duplicate { number });
+            let line = self.data.point_lines.line(index);
+            ReadError { at: line.map_or(error.at, At::Line), ..error }
+        })?;
         Ok(())
     }
 

@@ -132,8 +132,8 @@ impl ReadFault {
             Self::Count { .. } | Self::Mismatch { .. } => "X22",
             Self::Number { .. } => "X23",
             Self::Duplicate { .. } => "X24",
-            Self::Unsupported { .. } => "X25",
-            Self::Expansion { .. } => "X26",
+            Self::Unsupported { .. } => "X26",
+            Self::Expansion { .. } => "X29",
         }
     }
 }

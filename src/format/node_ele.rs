@@ -70,10 +70,7 @@ fn read_nodes(scanner: &mut Scanner, mesh: &mut Assembler) -> Result<(), ReadErr
         scanner.skip_blank();
         let line = scanner.line();
         mesh.point_number(scanner.integer("the number of a point")?);
-        let mut point = [0.0; 3];
-        for coordinate in &mut point[..dimension as usize] {
-            *coordinate = scanner.float("a coordinate of a point")?;
-        }
+        let point = scanner.point(dimension as usize)?;
         for _ in 0..attributes {
             // Read for its place in the line only; its digits say nothing of the coordinates.
             scanner.token("an attribute of a point")?;

@@ -282,7 +282,8 @@ impl Values<'_> {
     }
 }
 
-/// Writes a PLY file, ASCII or binary little-endian.
+/// Writes a PLY file, ASCII or binary little-endian. Marked edges and regions are dropped: an element
+/// `edge` and more properties are good PLY, but common readers refuse the whole file for them.
 pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::Result<()> {
     let format = if is_binary { "binary_little_endian" } else { "ascii" };
     let (points, triangles) = (mesh.point_count(), mesh.triangles());
@@ -290,13 +291,6 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     out.text("property double x\nproperty double y\nproperty double z\n")?;
     out.text(&format!("element face {}\n", triangles.len()))?;
     out.text("property list uchar int vertex_indices\n")?;
-    if mesh.has_regions() {
-        out.text("property int region\n")?;
-    }
-    if !mesh.edges().is_empty() {
-        out.text(&format!("element edge {}\n", mesh.edges().len()))?;
-        out.text("property int vertex1\nproperty int vertex2\nproperty int marker\n")?;
-    }
     out.text("end_header\n")?;
     for [x, y, z] in mesh.points() {
         if is_binary {
@@ -307,26 +301,15 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
             out.float(z, b'\n')?;
         }
     }
-    for (index, &[a, b, c]) in triangles.iter().enumerate() {
-        let values = [a as i32, b as i32, c as i32, mesh.region(index, 0)];
-        out.bytes(if is_binary { &[3] } else { b"3 " })?;
-        write_integers(&values[..if mesh.has_regions() { 4 } else { 3 }], is_binary, out)?;
-    }
-    for edge in mesh.edges() {
-        let values = [edge.vertices[0] as i32, edge.vertices[1] as i32, edge.marker];
-        write_integers(&values, is_binary, out)?;
-    }
-    Ok(())
-}
-
-/// Numbers on a line, or one after the other.
-fn write_integers(values: &[i32], is_binary: bool, out: &mut TextOut) -> io::Result<()> {
-    for (index, value) in values.iter().enumerate() {
+    for &[a, b, c] in triangles {
         if is_binary {
-            out.bytes(&value.to_le_bytes())?;
+            out.bytes(&[3])?;
+            [a, b, c].iter().try_for_each(|corner| out.bytes(&corner.to_le_bytes()))?;
         } else {
-            let end = if index + 1 == values.len() { b'\n' } else { b' ' };
-            out.integer(i64::from(*value), end)?;
+            out.bytes(b"3 ")?;
+            out.integer(i64::from(a), b' ')?;
+            out.integer(i64::from(b), b' ')?;
+            out.integer(i64::from(c), b'\n')?;
         }
     }
     Ok(())

@@ -38,6 +38,9 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
 
 /// The three lines before the data; whether numbers are binary.
 fn read_header(scanner: &mut Scanner) -> Result<bool, ReadError> {
+    if scanner.is_at_end() {
+        return Err(scanner.malformed("`# vtk DataFile Version`", b""));
+    }
     let first = scanner.rest_of_line();
     if !first.to_ascii_lowercase().starts_with(b"# vtk datafile version") {
         return Err(scanner.malformed("`# vtk DataFile Version`", first));
@@ -119,6 +122,32 @@ impl VtkReader<'_> {
         if self.is_binary {
             self.scanner.rest_of_line();
         }
+    }
+
+    /// Skips an array of strings: a line each as text, else a length and bytes each.
+    fn skip_strings(&mut self, count: u64) -> Result<(), ReadError> {
+        self.scanner.rest_of_line();
+        let count = self.check(Scalar::U8, "strings", count.saturating_mul(2))? / 2;
+        for _ in 0..count {
+            if !self.is_binary {
+                self.scanner.rest_of_line();
+                continue;
+            }
+            // The two highest bits say how many bytes the length takes.
+            let expected = "the length of a string";
+            let first = self.scanner.rest().first().copied().unwrap_or(0);
+            let (scalar, mask) = match first >> 6 {
+                3 => (Scalar::U8, 0x3f),
+                2 => (Scalar::U16, 0x3fff),
+                1 => (Scalar::U32, 0x3fff_ffff),
+                _ => (Scalar::U64, i64::MAX),
+            };
+            let bytes = self.scanner.take(scalar.size(), expected)?;
+            let length = scalar.integer(bytes, Endian::Big) & mask;
+            let length = self.scanner.check_count("characters of a string", length, 1)?;
+            self.scanner.take(length, "a string")?;
+        }
+        Ok(())
     }
 
     /// Checks that `count` values can follow.
@@ -328,8 +357,13 @@ impl VtkReader<'_> {
             }
             let components = self.scanner.count("components", 0)? as u64;
             let tuples = self.scanner.count("values of an array", 0)? as u64;
+            let count = components.saturating_mul(tuples);
+            if self.scanner.peek() == b"string" {
+                self.skip_strings(count)?;
+                continue;
+            }
             let scalar = self.scalar()?;
-            self.array(&name, scalar, components.saturating_mul(tuples))?;
+            self.array(&name, scalar, count)?;
         }
         Ok(())
     }
@@ -396,11 +430,11 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     for index in 0..cells {
         out.integers(&[if index < triangles.len() { TRIANGLE } else { LINE } as i32])?;
     }
-    out.end(&format!("CELL_DATA {cells}\nSCALARS region int 1\nLOOKUP_TABLE default"))?;
+    out.end(&format!("CELL_DATA {cells}\nFIELD FieldData 2\nregion 1 {cells} int"))?;
     for index in 0..cells {
         out.integers(&[if index < triangles.len() { mesh.region(index, 0) } else { 0 }])?;
     }
-    out.end("SCALARS marker int 1\nLOOKUP_TABLE default")?;
+    out.end(&format!("marker 1 {cells} int"))?;
     for index in 0..cells {
         let edge = index.checked_sub(triangles.len()).map(|index| edges[index]);
         out.integers(&[edge.map_or(0, |edge| edge.marker)])?;

@@ -9,6 +9,8 @@
 
 mod data;
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use read::read;

@@ -19,7 +19,7 @@ pub(super) fn read_by_all(bytes: &[u8]) {
 }
 
 /// A result that keeps the promises of [`MeshData`] and of [`ReadError`].
-fn assert_sound(form: MeshForm, size: usize, result: Result<MeshData, ReadError>) {
+pub(super) fn assert_sound(form: MeshForm, size: usize, result: Result<MeshData, ReadError>) {
     match result {
         Ok(mesh) => {
             let count = mesh.points.len() as u32;
@@ -60,6 +60,10 @@ fn counted_forms_notice_every_missing_item() {
         let files = Files::write(&square(), form, options);
         // The last number may lose digits unnoticed where nothing marks the end of the file.
         let last = files.main.trim_ascii_end().iter().rposition(|b| b.is_ascii_whitespace());
+        // OBJ counts nothing; the sections after the triangles of VTK and SU2 hold markers only.
+        if matches!(form, MeshForm::Obj | MeshForm::VtkLegacy | MeshForm::Su2) {
+            continue;
+        }
         let safe =
             if options.encoding == Encoding::Ascii { last.unwrap() } else { files.main.len() - 1 };
         for length in 0..safe {
@@ -93,13 +97,13 @@ fn one_changed_byte_does_no_harm() {
 }
 
 proptest! {
-    // spec: X20
+    // spec: X32
     #[test]
     fn random_bytes_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         read_by_all(&bytes);
     }
 
-    // spec: X20
+    // spec: X32
     #[test]
     fn spliced_files_do_no_harm(way in any::<prop::sample::Index>(), cut in any::<[prop::sample::Index; 3]>()) {
         let ways = ways();

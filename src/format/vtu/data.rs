@@ -19,7 +19,16 @@ pub(super) struct Coding {
     pub(super) endian: Endian,
     /// Type of the sizes before binary data: [`Scalar::U32`] or [`Scalar::U64`].
     pub(super) header: Scalar,
-    pub(super) is_compressed: bool,
+    pub(super) compression: Compression,
+}
+
+/// How binary data of a file is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Compression {
+    None,
+    Zlib,
+    /// LZ4 or LZMA.
+    Other,
 }
 
 /// Where the values of an array stand: offsets into the file.
@@ -127,7 +136,15 @@ impl<'a> Decoder<'a> {
         what: &'static str,
         count: u64,
     ) -> Result<Cow<'a, [u8]>, ReadError> {
+        let unsupported = || ReadFault::Unsupported {
+            what: "a compressor other than vtkZLibDataCompressor".to_owned(),
+            advice: "save the file uncompressed or with zlib",
+        };
+        let is_readable = self.coding.compression != Compression::Other;
         let (start, result) = match array.source {
+            Source::Base64 { start, .. } | Source::Raw { start, .. } if !is_readable => {
+                (start, Err(unsupported()))
+            }
             Source::Ascii { start, .. } => (start, Err(malformed("binary data", b""))),
             Source::Base64 { start, end } => (start, self.base64(array, start, end, (what, count))),
             Source::Raw { start, end } => (start, self.raw(array, start, end, (what, count))),
@@ -156,7 +173,7 @@ impl<'a> Decoder<'a> {
         };
         let stream = Base64(&text);
         let size = self.coding.header.size();
-        if self.coding.is_compressed {
+        if self.coding.compression == Compression::Zlib {
             let blocks = stream.decode(0, 3 * size)?;
             let blocks = self.block_count(&blocks, text.len())?;
             let header = stream.decode(0, (3 + blocks) * size)?;
@@ -169,7 +186,7 @@ impl<'a> Decoder<'a> {
         let separate = ends && text.len() > encoded(size);
         let length = stream.decode(0, size)?;
         let length = self.check_length(&length, array, expected)?;
-        if separate && size % 3 != 0 {
+        if separate && !size.is_multiple_of(3) {
             return stream.decode(encoded(size), length).map(Cow::Owned);
         }
         let mut bytes = stream.decode(0, size + length)?;
@@ -186,7 +203,7 @@ impl<'a> Decoder<'a> {
     ) -> Fallible<Cow<'a, [u8]>> {
         let bytes = &self.bytes[start..end];
         let size = self.coding.header.size();
-        if self.coding.is_compressed {
+        if self.coding.compression == Compression::Zlib {
             let head = bytes.get(..3 * size).ok_or_else(truncated)?;
             let header_bytes = (3 + self.block_count(head, bytes.len())?) * size;
             let header = bytes.get(..header_bytes).ok_or_else(truncated)?;

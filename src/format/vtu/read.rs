@@ -9,7 +9,9 @@ use crate::format::error::{At, ReadError, ReadFault};
 use crate::format::scalar::Scalar;
 use crate::format::scan::{Endian, Scanner, excerpt};
 use crate::format::vtk_cell::{self, Cells};
-use crate::format::vtu::data::{Array, Coding, Decoder, Source, expansion_limit, place};
+use crate::format::vtu::data::{
+    Array, Coding, Compression, Decoder, Source, expansion_limit, place,
+};
 use crate::mesh::MeshData;
 use memchr::{memchr, memmem};
 use quick_xml::Reader;
@@ -246,15 +248,13 @@ impl<'a> OutlineReader<'a> {
             Some(b"UInt64") => Scalar::U64,
             Some(other) => return Err(self.malformed("header_type UInt32 or UInt64", other)),
         };
-        let is_compressed = match self.attribute(element, "compressor")?.as_deref() {
-            None | Some(b"") => false,
-            Some(b"vtkZLibDataCompressor") => true,
-            Some(other) => {
-                let what = format!("the compressor `{}`", excerpt(other));
-                return Err(self.unsupported(&what, "save it uncompressed or with zlib"));
-            }
+        let compression = match self.attribute(element, "compressor")?.as_deref() {
+            None | Some(b"") => Compression::None,
+            Some(b"vtkZLibDataCompressor") => Compression::Zlib,
+            // ASCII arrays of such a file can be read all the same.
+            Some(_) => Compression::Other,
         };
-        Ok(Coding { endian, header, is_compressed })
+        Ok(Coding { endian, header, compression })
     }
 
     fn piece(&mut self, element: &BytesStart) -> Result<(), ReadError> {
