@@ -1,5 +1,6 @@
 //! Delaunay and constrained Delaunay triangulation of points in the plane.
 
+pub(crate) mod fast;
 pub(crate) mod lawson;
 pub(crate) mod order;
 
@@ -155,4 +156,13 @@ fn check_segments(count: usize, segments: &[[u32; 2]]) -> Result<(), CdtError> {
         Some(i) => Err(CdtError::BadSegment { segment: i as u32, vertices: segments[i], count }),
         None => Ok(()),
     }
+}
+
+/// TEMPORARY
+pub fn fast_for_now(points: &[Point2], parallel: bool) -> Triangulation {
+    fast::triangulate(points, parallel).triangulation
+}
+/// TEMPORARY
+pub fn lawson_for_now(points: &[Point2]) -> Triangulation {
+    lawson::triangulate(points)
 }
