@@ -177,10 +177,7 @@ fn sort_ties(items: &mut [[u32; 2]], points: &[Point2], lattice: &Lattice) {
     for run in items.chunk_by_mut(|a, b| a[0] == b[0]).filter(|run| run.len() > 1) {
         run.sort_unstable_by(|a, b| {
             let key = |item| morton(lattice.cell(at(item)));
-            key(a)
-                .cmp(&key(b))
-                .then_with(|| at(a).lexicographic(at(b)))
-                .then(a[1].cmp(&b[1]))
+            key(a).cmp(&key(b)).then_with(|| at(a).lexicographic(at(b))).then(a[1].cmp(&b[1]))
         });
     }
 }

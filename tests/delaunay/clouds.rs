@@ -129,7 +129,7 @@ pub fn all(n: usize) -> Vec<(&'static str, Vec<Point2>)> {
         ("ulps at 0.5", ulps(side as u64, 0.5)),
         ("ulps at 1", ulps(side as u64, 1.0)),
         ("spiral", spiral(n)),
-        // ("extremes", extremes()),
+        ("extremes", extremes()),
     ]
     .into_iter()
     .map(|(name, points)| (name, distinct(points)))

@@ -157,7 +157,8 @@ pub(super) fn merge(
         Cut::Vertical => (first.right, second.left),
         Cut::Horizontal => (first.top, second.bottom),
     };
-    let start = (Some(start.0).filter(|_| !first.single), Some(start.1).filter(|_| !second.single), start);
+    let start =
+        (Some(start.0).filter(|_| !first.single), Some(start.1).filter(|_| !second.single), start);
     let (low_left, low_right) = lower_tangent(arena, points, start);
     let [bottom, top] = first.spare;
     let (l, r) = (low_left.vertex, low_right.vertex);
@@ -169,19 +170,22 @@ pub(super) fn merge(
     if let Some(before) = before {
         arena.link(bottom.half_edge(1), before.half_edge(2));
     }
-    let mut seam = Seam { arena, points, l, r, left, right, base: bottom.half_edge(0) };
-    seam.sew();
-    let Seam { arena, l: l_top, r: r_top, left: after_top, right: before_top, base, .. } = seam;
     if let Some(after) = after {
         arena.link(bottom.half_edge(2), after.half_edge(1));
     }
+    let mut seam = Seam { arena, points, l, r, left, right, base: bottom.half_edge(0) };
+    seam.sew();
+    let Seam { arena, l: l_top, r: r_top, left: after_top, right: before_top, base, .. } = seam;
     arena.set(top, [l_top, r_top, GHOST]);
     arena.link(top.half_edge(0), base);
-    match before_top {
+    // A lone point has no ghosts; of a part of which but one vertex stays on the hull, all ghosts are
+    // used up and the bottom one comes next. Either way the new ghosts are neighbours there.
+    let ghost_left = |g: &TriangleId| *g != bottom;
+    match before_top.filter(ghost_left) {
         Some(g) => arena.link(top.half_edge(1), g.half_edge(2)),
         None => arena.link(top.half_edge(1), bottom.half_edge(2)),
     }
-    match after_top {
+    match after_top.filter(ghost_left) {
         Some(g) => arena.link(top.half_edge(2), g.half_edge(1)),
         None => arena.link(top.half_edge(2), bottom.half_edge(1)),
     }
@@ -305,8 +309,7 @@ impl Seam<'_, '_> {
     /// Removes the hull edge from `l` to `vertex`: the triangle behind it becomes the ghost of
     /// `beyond -> vertex`, and the ghost that of `l -> beyond`.
     fn drop_left(&mut self, ghost: TriangleId, inner: HalfEdgeId, [vertex, beyond]: [VertexId; 2]) {
-        let (to_beyond, to_l) =
-            (self.arena.twin(inner.next()), self.arena.twin(inner.prev()));
+        let (to_beyond, to_l) = (self.arena.twin(inner.next()), self.arena.twin(inner.prev()));
         let after = self.arena.twin(ghost.half_edge(2));
         let other = inner.triangle();
         self.arena.set_origin(ghost.half_edge(0), beyond);
@@ -319,7 +322,12 @@ impl Seam<'_, '_> {
 
     /// Removes the hull edge from `vertex` to `r`: the triangle behind it becomes the ghost of
     /// `vertex -> beyond`, and the ghost that of `beyond -> r`.
-    fn drop_right(&mut self, ghost: TriangleId, inner: HalfEdgeId, [vertex, beyond]: [VertexId; 2]) {
+    fn drop_right(
+        &mut self,
+        ghost: TriangleId,
+        inner: HalfEdgeId,
+        [vertex, beyond]: [VertexId; 2],
+    ) {
         let (to_r, to_vertex) = (self.arena.twin(inner.next()), self.arena.twin(inner.prev()));
         let before = self.arena.twin(ghost.half_edge(1));
         let other = inner.triangle();
