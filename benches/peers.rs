@@ -9,6 +9,7 @@ mod clouds;
 use spade::Triangulation as _;
 use std::hint::black_box;
 use std::time::Instant;
+use trigrade::delaunay::{Engine, Options, delaunay};
 use trigrade::point::Point2;
 
 /// Nanoseconds this thread has had a processor, where the system tells (Linux): on a machine that
@@ -65,11 +66,15 @@ fn main() {
             continue;
         }
         let n = points.len();
-        let fast = time(n, || trigrade::delaunay::fast_for_now(&points, false));
-        let two = time_on_wall(n, || trigrade::delaunay::fast_for_now(&points, true));
+        let fast = time(n, || delaunay(&points, Options::default()));
+        let two =
+            time_on_wall(n, || delaunay(&points, Options { parallel: true, ..Options::default() }));
         let full = engines == "all";
-        let lawson =
-            if full { time(n, || trigrade::delaunay::lawson_for_now(&points)) } else { 0.0 };
+        let lawson = if full {
+            time(n, || delaunay(&points, Options { engine: Engine::Lawson, parallel: false }))
+        } else {
+            0.0
+        };
         let slow =
             matches!(name, "axis cross" | "parabola" | "two circles" | "extremes" | "circle")
                 && n > 20_000;

@@ -58,11 +58,27 @@ impl Lattice {
         Self { x: Axis::over(low.x, high.x), y: Axis::over(low.y, high.y) }
     }
 
+    /// The level at which the cells of two points part: see [`level`].
+    #[inline(always)]
+    pub(crate) fn level(&self, p: Point2, q: Point2) -> u32 {
+        level(self.cell(p), self.cell(q))
+    }
+
     /// The cell of a point of the box.
     #[inline(always)]
     pub(crate) fn cell(&self, p: Point2) -> [u32; 2] {
         [self.x.cell(p.x), self.y.cell(p.y)]
     }
+}
+
+/// Level of the tree of the Morton curve at which two cells part, counted from the finest: 0 for
+/// the same cell, else odd if they part by x and even if by y.
+#[inline(always)]
+fn level([x, y]: [u32; 2], [u, v]: [u32; 2]) -> u32 {
+    let by_x = 2 * (32 - (x ^ u).leading_zeros());
+    let by_y = 2 * (32 - (y ^ v).leading_zeros());
+    // x is the upper of two bits, so it decides where both differ from the same bit on.
+    if by_x >= by_y { (by_x + 1) * u32::from(by_x > 0) } else { by_y }
 }
 
 /// Position of a cell along the Hilbert curve through 2^31 x 2^31 cells.
@@ -194,6 +210,7 @@ fn merge_equal(sorted: &mut Sorted) {
         sorted.index[kept] = sorted.index[i];
         kept += 1;
     }
+    sorted.repeated.sort_unstable();
     sorted.points.truncate(kept);
     sorted.index.truncate(kept);
 }

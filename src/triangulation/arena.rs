@@ -3,7 +3,7 @@
 //! An arena is a range of the slots; disjoint ranges can be handed to different threads. Slot
 //! indices are those of the whole. Triangles are written in full, and linked by raw half-edges.
 
-use super::{ACROSS, FLAGS, GHOST, HalfEdgeId, LIVE, Slot, TriangleId, Triangulation, VertexId};
+use super::{ACROSS, FLAGS, HalfEdgeId, LIVE, Slot, TriangleId, Triangulation, VertexId};
 
 /// A range of slots.
 pub(crate) struct Arena<'a> {
@@ -24,17 +24,18 @@ impl Triangulation {
         Arena { slots: &mut self.slots, base: 0 }
     }
 
-    /// Replaces each vertex `v` by `names[v]` (ghosts stay) and lists the slots that were not used.
+    /// Lists the slots that were not used, and renames the vertices.
     pub(crate) fn finish(&mut self, names: &[u32]) {
-        for (slot, i) in self.slots.iter_mut().zip(0..) {
-            if slot.words[FLAGS] & LIVE == 0 {
-                self.free.push(i);
-                continue;
-            }
-            for word in &mut slot.words[..3] {
-                if *word != GHOST.0 {
-                    *word = names[*word as usize];
-                }
+        let unused = self.slots.iter().zip(0..).filter(|(slot, _)| slot.words[FLAGS] & LIVE == 0);
+        self.free = unused.map(|(_, i)| i).collect();
+        self.rename(names);
+    }
+
+    /// Replaces each vertex `v` by `names[v]`; ghosts stay.
+    pub(crate) fn rename(&mut self, names: &[u32]) {
+        for word in self.slots.iter_mut().flat_map(|slot| &mut slot.words[..3]) {
+            if let Some(&name) = names.get(*word as usize) {
+                *word = name;
             }
         }
     }
@@ -80,8 +81,8 @@ impl Arena<'_> {
     #[inline(always)]
     pub(crate) fn set(&mut self, t: TriangleId, corners: [VertexId; 3]) {
         let words = self.words_mut(t.0);
-        [words[0], words[1], words[2]] = corners.map(|v| v.0);
-        words[FLAGS] = LIVE;
+        [words[0], words[1], words[2], words[FLAGS]] =
+            [corners[0].0, corners[1].0, corners[2].0, LIVE];
     }
 
     /// Moves one corner.
