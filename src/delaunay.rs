@@ -1,11 +1,168 @@
 //! Delaunay and constrained Delaunay triangulation of points in the plane.
 
+mod assemble;
+mod divide_conquer;
+mod fang_piegl;
+mod fast;
+mod hull;
+mod incremental;
 pub(crate) mod lawson;
-pub(crate) mod order;
+mod order;
+mod sweep;
+mod watson;
 
 use crate::point::Point2;
 use crate::triangulation::constrain::Obstacle;
-use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
+use crate::triangulation::{GHOST, HalfEdgeId, Triangulation, VertexId};
+
+/// The algorithm; all give the same triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Engine {
+    /// The fastest: divide and conquer over the cells of a Morton curve, on `threads` threads.
+    #[default]
+    Auto,
+    /// Insertion by cavities (Watson 1981).
+    Watson,
+    /// Insertion by flips (Lawson 1977).
+    Lawson,
+    /// Triangle by triangle with a uniform grid (Fang and Piegl 1993). Quadratic for points on
+    /// circles, and where the grid does not spread them.
+    FangPiegl,
+    /// Divide and conquer (Guibas and Stolfi 1985).
+    DivideConquer,
+    /// Sweep line (Fortune 1987).
+    Sweep,
+}
+
+impl Engine {
+    /// Every engine.
+    pub const ALL: [Self; 6] =
+        [Self::Auto, Self::Watson, Self::Lawson, Self::FangPiegl, Self::DivideConquer, Self::Sweep];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Watson => "watson",
+            Self::Lawson => "lawson",
+            Self::FangPiegl => "fang-piegl",
+            Self::DivideConquer => "divide-conquer",
+            Self::Sweep => "sweep",
+        }
+    }
+
+    /// The engine of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|engine| engine.name() == name)
+    }
+}
+
+/// How to triangulate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// The algorithm.
+    pub engine: Engine,
+    /// Whether [`Engine::Auto`] may use the threads of the current rayon pool. The result is the
+    /// same, to the slot.
+    pub parallel: bool,
+}
+
+/// A Delaunay triangulation.
+#[derive(Clone, Debug, Default)]
+pub struct Delaunay {
+    /// The triangles, with a ghost on every hull edge. All points on one line: ghosts only. Fewer
+    /// than two different points: nothing.
+    pub triangulation: Triangulation,
+    /// `[dropped, kept]` for every point equal to one of lower index, sorted: it is in no triangle.
+    pub repeated: Vec<[u32; 2]>,
+}
+
+impl Delaunay {
+    /// The finite triangles, counterclockwise, each from its lowest corner on, sorted: the same
+    /// list from every engine.
+    #[must_use]
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let t = &self.triangulation;
+        let finite = t.triangles().map(|u| t.corners(u)).filter(|c| !c.contains(&GHOST));
+        let from_lowest = |[a, b, c]: [u32; 3]| match a.min(b).min(c) {
+            low if low == a => [a, b, c],
+            low if low == b => [b, c, a],
+            _ => [c, a, b],
+        };
+        let mut list: Vec<[u32; 3]> = finite.map(|c| from_lowest(c.map(|v| v.0))).collect();
+        list.sort_unstable();
+        list
+    }
+}
+
+/// Why points cannot be triangulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PointsError {
+    /// A coordinate is NaN or infinite.
+    #[error("point {index} at {point} is not finite")]
+    NotFinite {
+        /// Index of the point.
+        index: u32,
+        /// Where it is.
+        point: Point2,
+    },
+    /// More points than half-edge indices allow.
+    #[error("{count} points are more than the {max} that can be triangulated")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        max: usize,
+    },
+}
+
+/// Delaunay triangulation of finite points: the unique one of SPEC 5. Equal points are merged.
+///
+/// # Shapes and units
+/// `points: [n][2]` in any unit.
+///
+/// # Guarantees
+/// L1, L2, L3, L4.
+///
+/// # Errors
+/// See [`PointsError`].
+///
+/// # Complexity
+/// [`Engine::Auto`]: `n log n`; 80 bytes a point and the input.
+pub fn delaunay(points: &[Point2], options: Options) -> Result<Delaunay, PointsError> {
+    check_points(points)?;
+    let run = match options.engine {
+        Engine::Auto => return Ok(fast::triangulate(points, options.parallel)),
+        Engine::Watson => watson::triangulate,
+        Engine::Lawson => lawson::triangulate,
+        Engine::FangPiegl => fang_piegl::triangulate,
+        Engine::DivideConquer => divide_conquer::triangulate,
+        Engine::Sweep => sweep::triangulate,
+    };
+    let (distinct, index, repeated) = merge_equal(points);
+    let mut triangulation = run(&distinct);
+    triangulation.rename(&index);
+    Ok(Delaunay { triangulation, repeated })
+}
+
+/// The different points in lexicographic order, the lowest index of each, and the rest as
+/// [`Delaunay::repeated`].
+fn merge_equal(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let at = |i: u32| points[i as usize];
+    order.sort_unstable_by(|&a, &b| at(a).lexicographic(at(b)).then(a.cmp(&b)));
+    let (mut index, mut repeated): (Vec<u32>, Vec<[u32; 2]>) = (Vec::new(), Vec::new());
+    for i in order {
+        match index.last() {
+            Some(&kept) if at(kept) == at(i) => repeated.push([i, kept]),
+            _ => index.push(i),
+        }
+    }
+    repeated.sort_unstable();
+    (index.iter().map(|&i| at(i)).collect(), index, repeated)
+}
 
 /// A constrained Delaunay triangulation with ghosts, and where to find things in it.
 #[derive(Clone, Default)]
@@ -21,14 +178,9 @@ pub struct Cdt {
 /// Why points and segments have no constrained Delaunay triangulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CdtError {
-    /// A coordinate is NaN or infinite.
-    #[error("point {index} at {point} is not finite")]
-    NotFinite {
-        /// Index of the point.
-        index: u32,
-        /// Where it is.
-        point: Point2,
-    },
+    /// A point is not finite, or there are too many.
+    #[error(transparent)]
+    Points(#[from] PointsError),
     /// Two points have equal coordinates.
     #[error("points {first} and {second} are both at {point}")]
     Duplicate {
@@ -38,14 +190,6 @@ pub enum CdtError {
         second: u32,
         /// Where they are.
         point: Point2,
-    },
-    /// More points than half-edge indices allow.
-    #[error("{count} points are more than the {max} that can be triangulated")]
-    TooMany {
-        /// How many there are.
-        count: usize,
-        /// How many there may be.
-        max: usize,
     },
     /// A segment names a point that does not exist, or joins a point to itself.
     #[error("segment {segment} joins points {} and {}, which are not two of the {count} points", .vertices[0], .vertices[1])]
@@ -92,9 +236,11 @@ pub const POINTS_MAX: usize = crate::triangulation::TRIANGLES_MAX / 2;
 /// # Complexity
 /// `n log n` for points in any order, plus the triangles that the segments cross.
 pub fn cdt(points: &[Point2], segments: &[[u32; 2]]) -> Result<Cdt, CdtError> {
-    check_points(points)?;
     check_segments(points.len(), segments)?;
-    let mut triangulation = lawson::triangulate(points);
+    let Delaunay { mut triangulation, repeated } = delaunay(points, Options::default())?;
+    if let Some(&[second, first]) = repeated.first() {
+        return Err(CdtError::Duplicate { first, second, point: points[first as usize] });
+    }
     let mut outgoing = triangulation.outgoing(points.len());
     for i in 0..segments.len() {
         force(&mut triangulation, points, (segments, i), &mut outgoing)?;
@@ -132,19 +278,12 @@ fn force(
     }
 }
 
-fn check_points(points: &[Point2]) -> Result<(), CdtError> {
+fn check_points(points: &[Point2]) -> Result<(), PointsError> {
     if points.len() > POINTS_MAX {
-        return Err(CdtError::TooMany { count: points.len(), max: POINTS_MAX });
+        return Err(PointsError::TooMany { count: points.len(), max: POINTS_MAX });
     }
-    if let Some(i) = points.iter().position(|p| !p.is_finite()) {
-        return Err(CdtError::NotFinite { index: i as u32, point: points[i] });
-    }
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    let at = |i: u32| points[i as usize];
-    order.sort_unstable_by(|&a, &b| at(a).lexicographic(at(b)).then(a.cmp(&b)));
-    let same = order.windows(2).find(|w| at(w[0]).key() == at(w[1]).key());
-    match same {
-        Some(w) => Err(CdtError::Duplicate { first: w[0], second: w[1], point: at(w[0]) }),
+    match points.iter().position(|p| !p.is_finite()) {
+        Some(i) => Err(PointsError::NotFinite { index: i as u32, point: points[i] }),
         None => Ok(()),
     }
 }

@@ -15,6 +15,7 @@
 //!   origin(e0)--e0--origin(e1)
 //! ```
 
+pub(crate) mod arena;
 pub mod constrain;
 pub mod locate;
 mod split;
@@ -54,17 +55,21 @@ pub enum Across {
     Border(u32),
 }
 
-/// One slot: three half-edges and the flags.
+/// One slot: three half-edges and the flags, as eight words, so that half-edge `e` finds its origin
+/// in word `e & 3` and its twin in word `4 + (e & 3)` without a bounds check.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Slot {
-    origin: [VertexId; 3],
-    /// Bits 0..3: constrained half-edges. Bit 3: slot is live. The rest belongs to the user (`tag`).
-    flags: u32,
-    across: [u32; 3],
-    /// Scratch word for searches; see [`Triangulation::mark`].
-    mark: u32,
+    words: [u32; 8],
 }
+
+/// Word of the flags. Bits 0..3: constrained half-edges. Bit 3: slot is live. The rest belongs to
+/// the user (`tag`).
+const FLAGS: usize = 3;
+/// First word of what lies across; bit 31 marks a border.
+const ACROSS: usize = 4;
+/// Scratch word for searches; see [`Triangulation::mark`].
+const MARK: usize = 7;
 
 const LIVE: u32 = 1 << 3;
 const TAG_SHIFT: u32 = 4;
@@ -74,6 +79,15 @@ const TAG_SHIFT: u32 = 4;
 pub struct Triangulation {
     slots: Vec<Slot>,
     free: Vec<u32>,
+}
+
+impl Slot {
+    /// Nothing: not live.
+    const FREE: Self = Self { words: [0; 8] };
+
+    const fn new([a, b, c]: [VertexId; 3]) -> Self {
+        Self { words: [a.0, b.0, c.0, LIVE, BORDER_BIT, BORDER_BIT, BORDER_BIT, 0] }
+    }
 }
 
 impl VertexId {
@@ -161,7 +175,7 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn is_live(&self, t: TriangleId) -> bool {
-        self.slots[t.index()].flags & LIVE != 0
+        self.slots[t.index()].words[FLAGS] & LIVE != 0
     }
 
     /// The live triangles in slot order.
@@ -173,7 +187,8 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn corners(&self, t: TriangleId) -> [VertexId; 3] {
-        self.slots[t.index()].origin
+        let [a, b, c, ..] = self.slots[t.index()].words;
+        [VertexId(a), VertexId(b), VertexId(c)]
     }
 
     /// Whether the triangle has the vertex at infinity.
@@ -187,7 +202,7 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn origin(&self, e: HalfEdgeId) -> VertexId {
-        self.slots[e.triangle().index()].origin[e.corner()]
+        VertexId(self.slots[e.triangle().index()].words[e.corner()])
     }
 
     /// Where the half-edge ends.
@@ -208,7 +223,7 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn across(&self, e: HalfEdgeId) -> Across {
-        let raw = self.slots[e.triangle().index()].across[e.corner()];
+        let raw = self.slots[e.triangle().index()].words[ACROSS + e.corner()];
         if raw & BORDER_BIT == 0 {
             Across::Twin(HalfEdgeId(raw))
         } else {
@@ -231,7 +246,8 @@ impl Triangulation {
     #[must_use]
     pub fn is_constrained(&self, e: HalfEdgeId) -> bool {
         let slot = &self.slots[e.triangle().index()];
-        slot.flags & (1 << e.corner()) != 0 || slot.across[e.corner()] & BORDER_BIT != 0
+        slot.words[FLAGS] & (1 << e.corner()) != 0
+            || slot.words[ACROSS + e.corner()] & BORDER_BIT != 0
     }
 
     /// Sets or clears the constraint on both sides of the edge.
@@ -245,7 +261,7 @@ impl Triangulation {
     /// Sets or clears the constraint on this side only: for code that builds triangles one by one.
     #[inline]
     pub fn set_constrained_side(&mut self, e: HalfEdgeId, constrained: bool) {
-        let flags = &mut self.slots[e.triangle().index()].flags;
+        let flags = &mut self.slots[e.triangle().index()].words[FLAGS];
         if constrained {
             *flags |= 1 << e.corner();
         } else {
@@ -257,13 +273,13 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn tag(&self, t: TriangleId) -> u32 {
-        self.slots[t.index()].flags >> TAG_SHIFT
+        self.slots[t.index()].words[FLAGS] >> TAG_SHIFT
     }
 
     /// Sets the caller's word; it must be below 2^28.
     pub fn set_tag(&mut self, t: TriangleId, tag: u32) {
         debug_assert!(tag < 1 << 28, "a tag has 28 bits");
-        let flags = &mut self.slots[t.index()].flags;
+        let flags = &mut self.slots[t.index()].words[FLAGS];
         *flags = (*flags & ((1 << TAG_SHIFT) - 1)) | (tag << TAG_SHIFT);
     }
 
@@ -271,18 +287,18 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn mark(&self, t: TriangleId) -> u32 {
-        self.slots[t.index()].mark
+        self.slots[t.index()].words[MARK]
     }
 
     /// Sets the scratch word.
     pub fn set_mark(&mut self, t: TriangleId, mark: u32) {
-        self.slots[t.index()].mark = mark;
+        self.slots[t.index()].words[MARK] = mark;
     }
 
     /// Adds a triangle with the given corners, in a recycled slot if there is one. Its edges are
     /// borders with owner value 0 until linked; nothing is constrained, tag and mark are 0.
     pub fn add(&mut self, corners: [VertexId; 3]) -> TriangleId {
-        let slot = Slot { origin: corners, flags: LIVE, across: [BORDER_BIT; 3], mark: 0 };
+        let slot = Slot::new(corners);
         if let Some(t) = self.free.pop() {
             self.slots[t as usize] = slot;
             TriangleId(t)
@@ -296,28 +312,29 @@ impl Triangulation {
     /// Removes a triangle; its slot will be reused. Neighbours keep stale links: the caller relinks.
     pub fn remove(&mut self, t: TriangleId) {
         debug_assert!(self.is_live(t), "removing a triangle twice");
-        self.slots[t.index()].flags = 0;
+        self.slots[t.index()].words[FLAGS] = 0;
         self.free.push(t.0);
     }
 
     /// Overwrites the corners of a live triangle in place (links, flags and tag stay).
     #[inline]
     pub fn set_corners(&mut self, t: TriangleId, corners: [VertexId; 3]) {
-        self.slots[t.index()].origin = corners;
+        let words = &mut self.slots[t.index()].words;
+        [words[0], words[1], words[2]] = corners.map(|v| v.0);
     }
 
     /// Makes two half-edges each other's twin.
     #[inline]
     pub fn link(&mut self, e: HalfEdgeId, f: HalfEdgeId) {
-        self.slots[e.triangle().index()].across[e.corner()] = f.0;
-        self.slots[f.triangle().index()].across[f.corner()] = e.0;
+        self.slots[e.triangle().index()].words[ACROSS + e.corner()] = f.0;
+        self.slots[f.triangle().index()].words[ACROSS + f.corner()] = e.0;
     }
 
     /// Makes the half-edge a border with the given owner value (below 2^31).
     #[inline]
     pub fn set_border(&mut self, e: HalfEdgeId, owner: u32) {
         debug_assert!(owner < BORDER_BIT, "an owner value has 31 bits");
-        self.slots[e.triangle().index()].across[e.corner()] = BORDER_BIT | owner;
+        self.slots[e.triangle().index()].words[ACROSS + e.corner()] = BORDER_BIT | owner;
     }
 
     /// Copies what lies across `from` (twin or border) to `to`, and points the twin back at it.
@@ -385,12 +402,12 @@ impl Triangulation {
 
     #[inline]
     fn raw_constrained(&self, e: HalfEdgeId) -> bool {
-        self.slots[e.triangle().index()].flags & (1 << e.corner()) != 0
+        self.slots[e.triangle().index()].words[FLAGS] & (1 << e.corner()) != 0
     }
 
     #[inline]
     fn set_origin(&mut self, e: HalfEdgeId, v: VertexId) {
-        self.slots[e.triangle().index()].origin[e.corner()] = v;
+        self.slots[e.triangle().index()].words[e.corner()] = v.0;
     }
 
     #[inline]

@@ -6,11 +6,12 @@
 //! hull edge, whose "circle" is the open half-plane beyond the edge together with the open edge: so
 //! a point outside the hull is no special case, and no artificial coordinates exist.
 
+use super::assemble::line;
+use super::incremental::{conflicts, first_off_line, seed};
 use super::order::hilbert_order;
 use crate::point::Point2;
-use crate::predicates::{Sign, incircle_perturbed, orient2d};
-use crate::triangulation::locate::{Location, between};
-use crate::triangulation::{GHOST, HalfEdgeId, TriangleId, Triangulation, VertexId};
+use crate::triangulation::locate::Location;
+use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// Delaunay triangulation of distinct finite points, in Hilbert order.
 pub(crate) fn triangulate(points: &[Point2]) -> Triangulation {
@@ -21,7 +22,9 @@ pub(crate) fn triangulate(points: &[Point2]) -> Triangulation {
 /// Inserts the points in the order given.
 pub(crate) fn insert_all(points: &[Point2], order: &[u32]) -> Triangulation {
     let Some(third) = first_off_line(points, order) else {
-        return line(points, order);
+        let mut sorted: Vec<VertexId> = order.iter().map(|&v| VertexId(v)).collect();
+        sorted.sort_unstable_by(|a, b| points[a.index()].lexicographic(points[b.index()]));
+        return line(&sorted);
     };
     let mut triangulation = Triangulation::with_capacity(2 * points.len() + 2);
     let mut hint = seed(&mut triangulation, points, [order[0], order[1], order[third]]);
@@ -29,52 +32,6 @@ pub(crate) fn insert_all(points: &[Point2], order: &[u32]) -> Triangulation {
         if i != third {
             hint = insert(&mut triangulation, points, VertexId(v), hint);
         }
-    }
-    triangulation
-}
-
-/// Position in the order of the first point that is not in line with the first two.
-fn first_off_line(points: &[Point2], order: &[u32]) -> Option<usize> {
-    let [a, b] = [order.first()?, order.get(1)?].map(|&v| points[v as usize]);
-    let off = |&v: &u32| orient2d(a, b, points[v as usize]) != Sign::Zero;
-    order.iter().skip(2).position(off).map(|i| i + 2)
-}
-
-/// One triangle and its three ghosts.
-fn seed(triangulation: &mut Triangulation, points: &[Point2], corners: [u32; 3]) -> TriangleId {
-    let [a, b, c] = corners.map(VertexId);
-    let [pa, pb, pc] = corners.map(|v| points[v as usize]);
-    let ccw = orient2d(pa, pb, pc) == Sign::Positive;
-    let [a, b, c] = if ccw { [a, b, c] } else { [a, c, b] };
-    let t = triangulation.add([a, b, c]);
-    let ghosts = [[b, a, GHOST], [c, b, GHOST], [a, c, GHOST]].map(|g| triangulation.add(g));
-    for i in 0..3 {
-        triangulation.link(t.half_edge(i as u32), ghosts[i].half_edge(0));
-        triangulation.link(ghosts[i].half_edge(2), ghosts[(i + 1) % 3].half_edge(1));
-    }
-    t
-}
-
-/// Points all on one line: two ghosts for each piece of it, and nothing finite. One point or none
-/// gives an empty triangulation.
-pub(crate) fn line(points: &[Point2], order: &[u32]) -> Triangulation {
-    let mut sorted: Vec<VertexId> = order.iter().map(|&v| VertexId(v)).collect();
-    sorted.sort_unstable_by(|a, b| points[a.index()].lexicographic(points[b.index()]));
-    let mut triangulation = Triangulation::default();
-    let sides: Vec<[TriangleId; 2]> = sorted
-        .windows(2)
-        .map(|w| [[w[0], w[1], GHOST], [w[1], w[0], GHOST]].map(|g| triangulation.add(g)))
-        .collect();
-    for [up, down] in &sides {
-        triangulation.link(up.half_edge(0), down.half_edge(0));
-    }
-    for pair in sides.windows(2) {
-        triangulation.link(pair[0][0].half_edge(1), pair[1][0].half_edge(2));
-        triangulation.link(pair[0][1].half_edge(2), pair[1][1].half_edge(1));
-    }
-    if let (Some(first), Some(last)) = (sides.first(), sides.last()) {
-        triangulation.link(first[0].half_edge(2), first[1].half_edge(1));
-        triangulation.link(last[0].half_edge(1), last[1].half_edge(2));
     }
     triangulation
 }
@@ -114,7 +71,7 @@ pub(crate) fn legalize(
         let Some(f) = triangulation.twin(e).filter(|_| !triangulation.is_constrained(e)) else {
             continue;
         };
-        if in_circle(triangulation, points, f.triangle(), p) {
+        if conflicts(triangulation, points, f.triangle(), p) {
             triangulation.flip(e);
             opposite.push(e.prev());
             opposite.push(f.next());
@@ -122,23 +79,19 @@ pub(crate) fn legalize(
     }
 }
 
-/// Whether `p` lies in the perturbed open circle of a triangle, ghost or not.
-pub(crate) fn in_circle(
-    triangulation: &Triangulation,
-    points: &[Point2],
-    t: TriangleId,
-    p: Point2,
-) -> bool {
-    let corners = triangulation.corners(t);
-    if corners.contains(&GHOST) {
-        let e = triangulation.ghost_edge(t);
-        let [a, b] = [triangulation.origin(e), triangulation.dest(e)].map(|v| points[v.index()]);
-        return match orient2d(a, b, p) {
-            Sign::Positive => true,
-            Sign::Zero => between(a, p, b),
-            Sign::Negative => false,
+/// Flips until every edge that may flip is Delaunay.
+pub(crate) fn legalize_all(triangulation: &mut Triangulation, points: &[Point2]) {
+    let mut stack: Vec<HalfEdgeId> =
+        triangulation.triangles().flat_map(TriangleId::half_edges).collect();
+    while let Some(e) = stack.pop() {
+        let Some(f) = triangulation.twin(e).filter(|_| !triangulation.is_constrained(e)) else {
+            continue;
         };
+        let apex = triangulation.apex(e);
+        let ghost = triangulation.is_ghost(e.triangle()) || triangulation.is_ghost(f.triangle());
+        if !ghost && conflicts(triangulation, points, f.triangle(), points[apex.index()]) {
+            triangulation.flip(e);
+            stack.extend([e.next(), e.prev(), f.next(), f.prev()]);
+        }
     }
-    let [a, b, c] = corners.map(|v| points[v.index()]);
-    incircle_perturbed(a, b, c, p) == Sign::Positive
 }

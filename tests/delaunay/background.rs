@@ -23,7 +23,14 @@ fn add_square(plc: &mut Plc, centre: Point2, half: f64, marker: i32) {
 }
 
 fn empty(inside: PlcInside) -> Plc {
-    Plc { points: Vec::new(), segments: Vec::new(), inside, regions: Vec::new() }
+    Plc {
+        points: Vec::new(),
+        point_markers: Vec::new(),
+        segments: Vec::new(),
+        inside,
+        regions: Vec::new(),
+        vertex_of: Vec::new(),
+    }
 }
 
 /// A square with a square hole and a square island in the hole, and a second square far away.

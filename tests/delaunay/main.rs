@@ -3,4 +3,5 @@
 mod background;
 mod cdt;
 mod clouds;
+mod engines;
 mod naive;
