@@ -225,9 +225,7 @@ fn a_dry_run_predicts_and_writes_nothing() {
 fn too_many_triangles_are_refused_before_any_work() {
     let (folder, plate) = folder();
     let mesh = at(&folder, "a.off");
-    let output = run(&[
-        "mesh", &plate, "-o", &mesh, "--gradation", "uniform", "--spacing", "1e-9",
-    ]);
+    let output = run(&["mesh", &plate, "-o", &mesh, "--gradation", "uniform", "--spacing", "1e-9"]);
     assert_exit(&output, 2);
     assert!(err(&output).contains("--max-triangles"), "{}", err(&output));
     assert_eq!(names(folder.path()), ["plate.poly"]);
@@ -419,8 +417,7 @@ fn places_that_cannot_be_written() {
     assert_exit(&directory, 2);
     assert!(err(&directory).contains("directory"), "{}", err(&directory));
     // One impossible output: none appears.
-    let both =
-        run(&["mesh", &plate, "-o", &at(&folder, "a.off"), "-o", &at(&folder, "dir.off")]);
+    let both = run(&["mesh", &plate, "-o", &at(&folder, "a.off"), "-o", &at(&folder, "dir.off")]);
     assert_exit(&both, 2);
     assert_eq!(names(folder.path()), ["dir.off", "plate.poly"]);
 }

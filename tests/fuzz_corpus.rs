@@ -93,8 +93,7 @@ fn run(target: Target) {
     let mut random = Random(0x7121_6ade);
     let mut count = 0;
     while !is_over(count) {
-        let bytes =
-            if count % 2 == 0 { random.mutated(&corpus) } else { random.bytes() };
+        let bytes = if count % 2 == 0 { random.mutated(&corpus) } else { random.bytes() };
         run_one(target, &bytes);
         count += 1;
     }

@@ -189,8 +189,7 @@ fn the_library_has_no_clock_no_randomness_and_no_platform_trigonometry() {
         }
         let text = read(&path);
         // A hash table that is never iterated is as deterministic as any other.
-        let is_excused =
-            |word: &str| word.starts_with("Hash") && text.contains("// lookups only");
+        let is_excused = |word: &str| word.starts_with("Hash") && text.contains("// lookups only");
         for (line, code) in code(&text) {
             for (word, why) in BANNED.iter().filter(|(word, _)| !is_excused(word)) {
                 assert!(!code.contains(*word), "{name}:{line}: error: {word} is banned: {why}");

@@ -24,7 +24,6 @@ impl<'a> Decoder<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-
     /// Any finite float.
     pub fn finite(&mut self) -> f64 {
         let value = f64::from_bits(self.bytes.arbitrary().unwrap_or(0));

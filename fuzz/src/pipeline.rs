@@ -30,8 +30,13 @@ pub fn run(bytes: &[u8]) {
 fn options(decoder: &mut Decoder<'_>) -> Options {
     let mut pick = |count| decoder.below(count);
     Options {
-        method: [Method::Graded, Method::Graded, Method::Afm, Method::Direct, Method::DelaunayInitial]
-            [pick(5) as usize],
+        method: [
+            Method::Graded,
+            Method::Graded,
+            Method::Afm,
+            Method::Direct,
+            Method::DelaunayInitial,
+        ][pick(5) as usize],
         density: [Density::BoundaryEdges, Density::AllEdges][pick(2) as usize],
         gradation: [Gradation::Growth, Gradation::Mean, Gradation::Third, Gradation::Uniform]
             [pick(4) as usize],

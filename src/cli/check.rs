@@ -15,10 +15,8 @@ use crate::check::check;
 /// judge: it needs no sound domain to see that a mesh does not match it.
 pub fn run(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
-    let reading = DomainReading {
-        from: arguments.domain_from.clone(),
-        farfield: arguments.farfield,
-    };
+    let reading =
+        DomainReading { from: arguments.domain_from.clone(), farfield: arguments.farfield };
     let domain = match &arguments.domain {
         Some(path) => Some(load_domain(path, &reading)?.1),
         None => None,

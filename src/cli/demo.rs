@@ -39,10 +39,13 @@ struct Case {
 
 fn cases() -> [Case; 3] {
     let defaults = Options::default();
-    let literal =
-        Options { gradation: Gradation::Mean, density: Density::AllEdges, ..defaults };
+    let literal = Options { gradation: Gradation::Mean, density: Density::AllEdges, ..defaults };
     [
-        Case { name: "graded", title: "graded, growth-limited spacing (default)", options: defaults },
+        Case {
+            name: "graded",
+            title: "graded, growth-limited spacing (default)",
+            options: defaults,
+        },
         Case { name: "literal", title: "graded, mean of all background edges", options: literal },
         Case {
             name: "afm",
@@ -51,6 +54,9 @@ fn cases() -> [Case; 3] {
         },
     ]
 }
+
+/// A file of a case: its place among the outputs, and the part of the plane a picture shows.
+type CaseFile = (usize, OutputFile, Option<View>);
 
 /// What came of a case.
 struct Done {
@@ -96,7 +102,7 @@ pub fn run(
 /// The files of the demonstration, in the order they are staged.
 struct Files {
     folder: PathBuf,
-    cases: Vec<Vec<(usize, OutputFile, Option<View>)>>,
+    cases: Vec<Vec<CaseFile>>,
 }
 
 impl Files {
@@ -161,7 +167,7 @@ fn run_case(
     case: Case,
     domain: &Domain,
     mut watch: Watch,
-    (outputs, files): (&mut Outputs, &[(usize, OutputFile, Option<View>)]),
+    (outputs, files): (&mut Outputs, &[CaseFile]),
 ) -> Result<Done, Failure> {
     let meshed = mesh_domain(domain, &case.options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
@@ -174,8 +180,8 @@ fn run_case(
     watch.begin("read back");
     let (index, file, _) = &files[0];
     let name = file.path.display().to_string();
-    let data = parse(&outputs.read_back(*index)?, MeshForm::Msh, &[])
-        .map_err(|e| malformed(&name, &e))?;
+    let data =
+        parse(&outputs.read_back(*index)?, MeshForm::Msh, &[]).map_err(|e| malformed(&name, &e))?;
     watch.begin("check");
     let report = verdict::check_mesh(&data, Some(domain));
     Ok(Done { case, meshed, data, report, laps: watch.finish() })

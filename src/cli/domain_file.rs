@@ -6,9 +6,7 @@ use super::input::{Input, is_dash, load};
 use crate::domain::validate::Fault;
 use crate::domain::{Domain, Place};
 use crate::format::airfoil::FarField;
-use crate::format::domain_file::{
-    DomainForm, DomainReadError, Problem, ReadOptions, read_domain,
-};
+use crate::format::domain_file::{DomainForm, DomainReadError, Problem, ReadOptions, read_domain};
 use std::path::Path;
 
 /// At most this many faults are printed; the JSON report has all of them.
@@ -24,12 +22,11 @@ const FORMS: &str = "poly, json, geojson, dat";
 pub fn load_domain(path: &Path, reading: &DomainReading) -> Result<(Input, Domain), Failure> {
     let input = load(path)?;
     let form = form_of(path, reading.from.as_deref())?;
-    let far_field =
-        reading.farfield.map(|far| FarField { chords: far.radius, points: far.points });
+    let far_field = reading.farfield.map(|far| FarField { chords: far.radius, points: far.points });
     let options = ReadOptions { node: None, far_field };
     let mut outcome = read_domain(&input.bytes, form, &options);
     if let Err(DomainReadError { problem: Problem::NodesElsewhere, .. }) = &outcome
-        && let Some(node) = input.path.as_deref().and_then(|path| node_beside(path))
+        && let Some(node) = input.path.as_deref().and_then(node_beside)
     {
         let options = ReadOptions { node: Some(&node), ..options };
         outcome = read_domain(&input.bytes, form, &options);

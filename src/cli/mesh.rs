@@ -97,18 +97,15 @@ pub fn no_mesh(error: &MeshError) -> Failure {
     match error {
         MeshError::Invalid(_) | MeshError::Background(_) => Failure::findings(vec![diagnostic]),
         MeshError::TooMany { .. } => Failure::cannot_run(
-            diagnostic.help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
+            diagnostic
+                .help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
         ),
         MeshError::Front(_) | MeshError::Options(_) => Failure::cannot_run(diagnostic),
     }
 }
 
 /// Writes every file into its stage.
-fn write_all(
-    outputs: &mut Outputs,
-    files: &[OutputFile],
-    meshed: &Meshed,
-) -> Result<(), Failure> {
+fn write_all(outputs: &mut Outputs, files: &[OutputFile], meshed: &Meshed) -> Result<(), Failure> {
     let needs_picture = files.iter().any(|file| file.form.is_picture());
     let data = if needs_picture { MeshData::from(&meshed.mesh) } else { MeshData::default() };
     let drawing = Drawing::of(&data, "");
@@ -299,7 +296,7 @@ pub fn count(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 && digits.len() > 4 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) && digits.len() > 4 {
             text.push(',');
         }
         text.push(digit);

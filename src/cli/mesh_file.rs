@@ -122,9 +122,7 @@ pub fn write(
         }
     });
     match refusal {
-        Some(message) => {
-            Err(Failure::cannot_run(Diagnostic::new(message).at(file.path.display())))
-        }
+        Some(message) => Err(Failure::cannot_run(Diagnostic::new(message).at(file.path.display()))),
         None => written,
     }
 }

@@ -21,9 +21,7 @@ pub struct Outcome {
 /// A failure as programs read it.
 #[must_use]
 pub fn failure_json(failure: &Failure) -> Value {
-    let complaint = |d: &Diagnostic| {
-        json!({ "rule": d.rule, "message": d.message, "places": d.places, "help": d.helps })
-    };
+    let complaint = |d: &Diagnostic| json!({ "rule": d.rule, "message": d.message, "places": d.places, "help": d.helps });
     json!({
         "schema": "trigrade-failure/1",
         "verdict": if failure.exit == EXIT_FINDINGS { "invalid" } else { "could-not-run" },
