@@ -17,7 +17,7 @@ use crate::size::Prediction;
 use crate::triangulation::{Across, HalfEdgeId, Triangulation};
 use field::Fields;
 use scale::Scale;
-use std::collections::HashMap;
+use std::collections::HashMap; // lookups only
 
 /// A stage of the pipeline, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -348,10 +348,10 @@ fn sound_and_unsound_meshes() {
 fn a_gate_that_is_missed_fails_unless_allowed() {
     let folder = tempfile::tempdir().expect("a temporary directory");
     let mesh = at(&folder, "a.off");
-    // A right triangle with legs 1 and 4: R / 2r is 1.87, the smallest angle 14 degrees.
+    // A right triangle with legs 1 and 4: R / 2r is 2.35, the smallest angle 14 degrees.
     fs::write(&mesh, "OFF\n3 1 0\n0 0 0\n4 0 0\n0 1 0\n3 0 1 2\n").expect("written");
-    assert_exit(&run(&["check", &mesh, "--max-aspect", "2", "--min-angle", "14"]), 0);
-    for gate in [["--max-aspect", "1.8"], ["--min-angle", "15"], ["--gate", "edge_ratio <= 4"]] {
+    assert_exit(&run(&["check", &mesh, "--max-aspect", "2.4", "--min-angle", "14"]), 0);
+    for gate in [["--max-aspect", "2.3"], ["--min-angle", "15"], ["--gate", "edge_ratio <= 4"]] {
         let missed = run(&["check", &mesh, gate[0], gate[1]]);
         assert_exit(&missed, 1);
         assert!(out(&missed).contains("MISSED"), "{}", out(&missed));

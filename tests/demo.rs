@@ -6,6 +6,18 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// One run that the tests share.
+fn shared() -> &'static (TempDir, Output) {
+    static RUN: OnceLock<(TempDir, Output)> = OnceLock::new();
+    RUN.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let output = demo(folder.path());
+        (folder, output)
+    })
+}
 
 fn demo(folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trigrade"))
@@ -23,9 +35,8 @@ fn report(folder: &Path) -> Value {
 // spec: K9
 #[test]
 fn it_leaves_checked_meshes_pictures_and_a_report() {
-    let folder = tempfile::tempdir().expect("a temporary directory");
-    let target = folder.path().join("demo");
-    let output = demo(&target);
+    let (folder, output) = shared();
+    let target = folder.path();
     let complaints = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{complaints}");
     for name in ["graded", "literal", "afm"] {
@@ -49,9 +60,7 @@ fn it_leaves_checked_meshes_pictures_and_a_report() {
 // spec: K9
 #[test]
 fn the_default_mesh_is_a_good_one() {
-    let folder = tempfile::tempdir().expect("a temporary directory");
-    assert_eq!(demo(folder.path()).status.code(), Some(0));
-    let report = report(folder.path());
+    let report = report(shared().0.path());
     let graded = &report["meshes"][0];
     assert_eq!(graded["verdict"], "passed", "{graded}");
     let triangles = graded["triangles"].as_u64().expect("a count");
@@ -63,12 +72,15 @@ fn the_default_mesh_is_a_good_one() {
 }
 
 #[test]
-fn a_second_run_replaces_the_first_and_gives_the_same_meshes() {
+fn a_second_run_gives_the_same_meshes_and_pictures() {
+    // A folder of another name, and one that does not exist yet.
     let folder = tempfile::tempdir().expect("a temporary directory");
-    assert_eq!(demo(folder.path()).status.code(), Some(0));
-    let first = fs::read(folder.path().join("graded.msh")).expect("there");
-    assert_eq!(demo(folder.path()).status.code(), Some(0));
-    assert_eq!(first, fs::read(folder.path().join("graded.msh")).expect("there"));
+    let again = folder.path().join("some/where");
+    assert_eq!(demo(&again).status.code(), Some(0));
+    for name in ["graded.msh", "afm.msh", "literal-airfoil.svg", "naca0012.poly"] {
+        let read = |folder: &Path| fs::read(folder.join(name)).expect("there");
+        assert!(read(&again) == read(shared().0.path()), "{name} differs");
+    }
 }
 
 #[test]

@@ -374,6 +374,9 @@ pub struct PlotArguments {
     /// Draw only this part of the plane.
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
     pub window: Option<View>,
+    /// The line above the picture; the file's name if not given.
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
     /// Width of the picture in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 1200)]
     #[arg(value_parser = clap::value_parser!(u32).range(16..=20_000))]

@@ -44,10 +44,15 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
         return Err(Failure::cannot_run(diagnostic.help("`trigrade convert` writes meshes")));
     }
     let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
+    let file_name = || {
+        let name = input.path.as_deref().and_then(std::path::Path::file_name);
+        name.map_or_else(|| input.name.clone(), |name| name.to_string_lossy().into_owned())
+    };
+    let title = arguments.title.clone().unwrap_or_else(file_name);
     let drawing = Drawing {
         view: arguments.window,
         width: f64::from(arguments.width),
-        ..Drawing::of(&mesh, input.name.clone())
+        ..Drawing::of(&mesh, title)
     };
     write_files(&files, &mesh, &drawing, cleanup)?;
     Ok(outcome(&input.name, &mesh, &files))

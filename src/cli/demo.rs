@@ -55,6 +55,9 @@ fn cases() -> [Case; 3] {
     ]
 }
 
+/// A file of a case: its place among the outputs, and the part of the plane a picture shows.
+type CaseFile = (usize, OutputFile, Option<View>);
+
 /// What came of a case.
 struct Done {
     case: Case,
@@ -99,7 +102,7 @@ pub fn run(
 /// The files of the demonstration, in the order they are staged.
 struct Files {
     folder: PathBuf,
-    cases: Vec<Vec<(usize, OutputFile, Option<View>)>>,
+    cases: Vec<Vec<CaseFile>>,
 }
 
 impl Files {
@@ -164,7 +167,7 @@ fn run_case(
     case: Case,
     domain: &Domain,
     mut watch: Watch,
-    (outputs, files): (&mut Outputs, &[(usize, OutputFile, Option<View>)]),
+    (outputs, files): (&mut Outputs, &[CaseFile]),
 ) -> Result<Done, Failure> {
     let meshed = mesh_domain(domain, &case.options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");

@@ -26,7 +26,7 @@ pub fn load_domain(path: &Path, reading: &DomainReading) -> Result<(Input, Domai
     let options = ReadOptions { node: None, far_field };
     let mut outcome = read_domain(&input.bytes, form, &options);
     if let Err(DomainReadError { problem: Problem::NodesElsewhere, .. }) = &outcome
-        && let Some(node) = input.path.as_deref().and_then(|path| node_beside(path))
+        && let Some(node) = input.path.as_deref().and_then(node_beside)
     {
         let options = ReadOptions { node: Some(&node), ..options };
         outcome = read_domain(&input.bytes, form, &options);

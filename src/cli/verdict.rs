@@ -32,8 +32,7 @@ pub fn sentence(report: &Report, name: &str) -> String {
             format!("passed: {name} was read back and keeps {} rules", report.checked.len())
         }
         Verdict::Failed => {
-            let total: u64 = report.counts.iter().map(|entry| entry.count).sum();
-            format!("FAILED: {name} has {} findings", count(total))
+            format!("FAILED: {name} has {}", findings_in_words(report))
         }
         Verdict::CouldNotRun => {
             format!("could not run on {name}: {}", report.could_not_run.join("; "))
@@ -114,11 +113,18 @@ pub fn text(report: &Report, name: &str) -> String {
 }
 
 fn verdict_line(report: &Report) -> String {
-    let total: u64 = report.counts.iter().map(|entry| entry.count).sum();
     match report.verdict {
         Verdict::Passed => format!("passed: {} rules hold", report.checked.len()),
-        Verdict::Failed => format!("FAILED: {} findings", count(total)),
+        Verdict::Failed => format!("FAILED: {}", findings_in_words(report)),
         Verdict::CouldNotRun => format!("could not run: {}", report.could_not_run.join("; ")),
+    }
+}
+
+/// How many findings make the check fail, exactly.
+fn findings_in_words(report: &Report) -> String {
+    match report.counts.iter().filter(|entry| !entry.allowed).map(|entry| entry.count).sum() {
+        1 => "1 finding".to_owned(),
+        total => format!("{} findings", count(total)),
     }
 }
 
@@ -174,5 +180,51 @@ impl fmt::Display for Figures {
             "R/2r mean {:.4}, 99 % {:.3}, max {:.3}; smallest angle {:.1}°",
             self.mean, self.p99, self.max, self.angle_min_deg
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A right triangle with legs 4 and 1, and another one on its hypotenuse that is flat.
+    fn mesh(triangles: &[[u32; 3]]) -> MeshData {
+        let points = [[0.0, 0.0], [4.0, 0.0], [0.0, 1.0], [2.0, 0.5]];
+        let points = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+        MeshData { points, triangles: triangles.to_vec(), ..MeshData::default() }
+    }
+
+    #[test]
+    fn a_sound_mesh_is_told_in_figures() {
+        let mut sound = mesh(&[[0, 1, 2]]);
+        sound.points.truncate(3);
+        let report = check_mesh(&sound, None);
+        assert_eq!((word(&report), findings(&report, "a.off")), ("passed", String::new()));
+        let figures = Figures::of(&report).expect("measured");
+        // R is half the hypotenuse, r half of what the legs exceed it by.
+        let hypotenuse = 17.0_f64.sqrt();
+        let ratio = (hypotenuse / 2.0) / (5.0 - hypotenuse);
+        assert!((figures.max - ratio).abs() < 1e-12, "{figures:?}");
+        assert!((figures.angle_min_deg - 0.25_f64.atan().to_degrees()).abs() < 1e-9);
+        assert!(text(&report, "a.off").contains("passed"));
+    }
+
+    // spec: K4
+    #[test]
+    fn findings_are_told_with_rule_and_place() {
+        let report = check_mesh(&mesh(&[[0, 1, 2], [1, 2, 3]]), None);
+        assert_eq!(word(&report), "failed");
+        let told = findings(&report, "a.off");
+        assert!(told.starts_with("error[M"), "{told}");
+        assert!(told.contains("--> a.off triangle 1"), "{told}");
+        assert!(told.contains("trigrade explain M"), "{told}");
+        assert!(sentence(&report, "a.off").contains("FAILED"));
+    }
+
+    #[test]
+    fn an_empty_mesh_is_no_pass() {
+        let report = check_mesh(&MeshData::default(), None);
+        assert_ne!(word(&report), "passed");
+        assert_eq!(Figures::of(&report), None);
     }
 }

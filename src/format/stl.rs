@@ -10,7 +10,7 @@ use crate::format::text::TextOut;
 use crate::format::view::MeshView;
 use crate::format::{MeshForm, ReadOptions};
 use crate::mesh::MeshData;
-use std::collections::HashMap;
+use std::collections::HashMap; // lookups only
 use std::io;
 
 /// Bytes before the triangles of a binary file: a comment and the count.

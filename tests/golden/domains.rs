@@ -46,20 +46,21 @@ pub struct Golden {
 
 /// All of them.
 pub const GOLDENS: [Golden; 14] = [
-    golden("airfoil", Form::Poly, &[], 2.0, airfoil),
-    golden("airfoil_section", Form::Dat, &["--farfield", "4,20"], 2.0, section),
-    golden("three_element", Form::Poly, &[], 4.0, three_element),
-    golden("plate_with_holes", Form::Json, &[], 2.0, plate_with_holes),
-    golden("gear", Form::Json, &[], 2.0, gear),
-    golden("l_shape", Form::Poly, &["--gradation", "uniform"], 2.0, l_shape),
-    golden("narrow_channel", Form::Poly, &[], 3.0, narrow_channel),
-    golden("spiral", Form::Poly, &[], 3.0, spiral),
-    golden("comb", Form::Poly, &["--method", "afm"], 3.0, comb),
-    golden("star", Form::Json, &[], 4.0, star),
-    golden("nested_islands", Form::Json, &["--method", "direct"], 3.0, nested_islands),
-    golden("jump", Form::Poly, &[], 50.0, jump),
+    golden("airfoil", Form::Poly, &[], 1.5, airfoil),
+    golden("airfoil_section", Form::Dat, &["--farfield", "4,20"], 1.5, section),
+    golden("three_element", Form::Poly, &[], 1.6, three_element),
+    golden("plate_with_holes", Form::Json, &[], 1.8, plate_with_holes),
+    golden("gear", Form::Json, &[], 1.5, gear),
+    golden("l_shape", Form::Poly, &["--gradation", "uniform"], 1.3, l_shape),
+    golden("narrow_channel", Form::Poly, &[], 1.6, narrow_channel),
+    golden("spiral", Form::Poly, &[], 2.5, spiral),
+    golden("comb", Form::Poly, &["--method", "afm"], 1.5, comb),
+    golden("star", Form::Json, &[], 2.2, star),
+    golden("nested_islands", Form::Json, &["--method", "direct"], 1.5, nested_islands),
+    // The boundary is not split, so the two long edges beside short ones get flat triangles.
+    golden("jump", Form::Poly, &[], 11_000.0, jump),
     golden("constrained", Form::Poly, &["--gradation", "mean", "--clamp", "1.5"], 4.0, constrained),
-    golden("background", Form::Poly, &["--method", "delaunay-initial"], 50.0, plate_with_holes),
+    golden("background", Form::Poly, &["--method", "delaunay-initial"], 20.0, plate_with_holes),
 ];
 
 const fn golden(
