@@ -1,7 +1,7 @@
 //! SPEC.md and the tests move together: every invariant has a test, every mark names an invariant.
 //!
 //! An invariant is `**ID** [slug] sentence`, a mark is a comment `// spec: ID ID ...` directly
-//! above a test.
+//! above a test. `!ID` marks a test of what must be refused; alone it holds up nothing.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -66,7 +66,8 @@ fn invariants(spec: &str) -> Vec<Invariant> {
 struct Mark {
     id: String,
     place: String,
-    is_on_a_test: bool,
+    /// Whether it stands above a test, and not for a refusal only.
+    is_support: bool,
 }
 
 fn marks(name: &str, text: &str) -> Vec<Mark> {
@@ -80,9 +81,9 @@ fn marks(name: &str, text: &str) -> Vec<Mark> {
             .any(|next| next.starts_with("#[test]"))
             || lines.get(i + 1).is_some_and(|next| next.starts_with("fn "));
         found.extend(ids.split([' ', ',']).filter(|id| !id.is_empty()).map(|id| Mark {
-            id: id.to_owned(),
+            id: id.trim_start_matches('!').to_owned(),
             place: format!("{name}:{}", i + 1),
-            is_on_a_test,
+            is_support: is_on_a_test && !id.starts_with('!'),
         }));
     }
     found
@@ -131,7 +132,7 @@ fn every_invariant_says_how_strong_it_is() {
 #[test]
 fn every_invariant_has_a_test() {
     let tested: BTreeSet<String> =
-        all_marks().into_iter().filter(|mark| mark.is_on_a_test).map(|mark| mark.id).collect();
+        all_marks().into_iter().filter(|mark| mark.is_support).map(|mark| mark.id).collect();
     let untested: Vec<String> = spec()
         .into_iter()
         .filter(|rule| !tested.contains(&rule.id) && !rule.wording.contains("*strength:* assumed"))
@@ -197,7 +198,7 @@ fn the_machinery_sees_what_it_should() {
     assert_eq!(invariants(spec)[0].wording, "**P1** [a.b] One more. *strength:* exact");
     let text = concat!("    // sp", "ec: P1 P2\n    #[test]\n", "// sp", "ec: P3\nlet x = 1;\n");
     let seen: Vec<(String, bool)> =
-        marks("f", text).into_iter().map(|mark| (mark.id, mark.is_on_a_test)).collect();
-    assert_eq!(seen, [("P1".into(), true), ("P2".into(), true), ("P3".into(), false)]);
+        marks("f", text).into_iter().map(|mark| (mark.id, mark.is_support)).collect();
+    assert_eq!(seen, [("P1".into(), true), ("P2".into(), false), ("P3".into(), false)]);
     assert_eq!(literal_ids("rule(\"M3\"), \"no\", \"m3\", \"M\""), [(1, "M3".to_owned())]);
 }
