@@ -196,7 +196,7 @@ fn the_machinery_sees_what_it_should() {
     let ids: Vec<String> = invariants(spec).into_iter().map(|rule| rule.id).collect();
     assert_eq!(ids, ["P1", "P2"]);
     assert_eq!(invariants(spec)[0].wording, "**P1** [a.b] One more. *strength:* exact");
-    let text = concat!("    // sp", "ec: P1 P2\n    #[test]\n", "// sp", "ec: P3\nlet x = 1;\n");
+    let text = concat!("    // sp", "ec: P1 !P2\n    #[test]\n", "// sp", "ec: P3\nlet x = 1;\n");
     let seen: Vec<(String, bool)> =
         marks("f", text).into_iter().map(|mark| (mark.id, mark.is_support)).collect();
     assert_eq!(seen, [("P1".into(), true), ("P2".into(), false), ("P3".into(), false)]);
