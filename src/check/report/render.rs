@@ -33,7 +33,7 @@ pub enum Form {
     GithubSummary,
     /// Code quality JSON of GitLab.
     Gitlab,
-    /// Test Anything Protocol, version 14: a test for each id and each gate.
+    /// Test Anything Protocol, version 13: a test for each id and each gate.
     Tap,
 }
 
@@ -99,7 +99,7 @@ impl std::str::FromStr for Form {
 ///
 /// let report = check(&MeshData::default(), None, &CheckOptions::new());
 /// let subject = Subject { mesh: "empty.msh", domain: None };
-/// assert!(render(&report, Form::Tap, &subject).starts_with("TAP version 14\n"));
+/// assert!(render(&report, Form::Tap, &subject).starts_with("TAP version 13\n"));
 /// ```
 #[must_use]
 pub fn render(report: &Report, form: Form, subject: &Subject<'_>) -> String {
