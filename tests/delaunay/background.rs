@@ -78,6 +78,7 @@ fn check_open(background: &Background) {
     assert!(edges[background.boundary_count..].iter().all(|e| e.interior));
 }
 
+// spec: T6 T7
 #[test]
 fn even_odd_makes_islands_in_holes_and_several_components() {
     let background = Background::new(&nested(PlcInside::EvenOdd)).unwrap();
@@ -88,6 +89,7 @@ fn even_odd_makes_islands_in_holes_and_several_components() {
     check_open(&background);
 }
 
+// spec: T6 T7
 #[test]
 fn even_odd_constraints_do_not_switch() {
     let mut plc = empty(PlcInside::EvenOdd);
@@ -103,6 +105,7 @@ fn even_odd_constraints_do_not_switch() {
     check_open(&background);
 }
 
+// spec: T6
 #[test]
 fn boundary_keeps_the_domain_on_its_left() {
     for reversed in [false, true] {
@@ -120,6 +123,7 @@ fn boundary_keeps_the_domain_on_its_left() {
     }
 }
 
+// spec: T6 T7
 #[test]
 fn carving_keeps_what_no_seed_reaches() {
     let background = Background::new(&nested(PlcInside::Carve(vec![p(3.0, 0.0)]))).unwrap();
@@ -131,6 +135,7 @@ fn carving_keeps_what_no_seed_reaches() {
     check_open(&whole);
 }
 
+// spec: T6
 #[test]
 fn regions_are_tagged() {
     let mut plc = nested(PlcInside::Carve(Vec::new()));
@@ -144,6 +149,7 @@ fn regions_are_tagged() {
     assert_eq!(background.region(t.unwrap()).unwrap().marker, 80);
 }
 
+// spec: T8
 #[test]
 fn seeds_in_bad_places_are_named() {
     let region = |seed, marker| Region { seed, marker, area_max: None };
@@ -170,6 +176,7 @@ fn seeds_in_bad_places_are_named() {
     assert_eq!(hole.unwrap_err().to_string(), expected);
 }
 
+// spec: T8
 #[test]
 fn a_domain_with_nothing_inside_is_an_error() {
     let mut open = empty(PlcInside::Carve(Vec::new()));
@@ -182,6 +189,7 @@ fn a_domain_with_nothing_inside_is_an_error() {
     );
 }
 
+// spec: T7
 #[test]
 fn an_isolated_point_is_a_vertex_of_the_open_region() {
     let mut plc = empty(PlcInside::EvenOdd);
