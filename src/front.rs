@@ -201,8 +201,7 @@ impl<'a> Front<'a> {
             let ([a, b], [c, d]) = (key(i), key(j));
             a.lexicographic(c).then_with(|| b.lexicographic(d))
         });
-        let lengths: Vec<f64> =
-            order.iter().map(|id| key(id)[0].distance(key(id)[1])).collect();
+        let lengths: Vec<f64> = order.iter().map(|id| key(id)[0].distance(key(id)[1])).collect();
         self.queue.set_unit(lengths.into_iter().fold(f64::INFINITY, f64::min));
         let mut queued = vec![false; self.edges.len()];
         for first in order {

@@ -160,12 +160,8 @@ impl Placer<'_> {
                 .then(|| self.bisector(corner, at, along, spacing))
         };
         let floor = self.apex_score();
-        let mut trials = [
-            Some(front),
-            bisect(&n.left, n.a, n.b),
-            bisect(&n.right, n.b, n.a),
-        ]
-        .map(|point| point.map(|point| self.trial(point, spacing)));
+        let mut trials = [Some(front), bisect(&n.left, n.a, n.b), bisect(&n.right, n.b, n.a)]
+            .map(|point| point.map(|point| self.trial(point, spacing)));
         for trial in &mut trials {
             if trial.is_some_and(|t| NEW_POINT_WEIGHT * t.score <= floor) {
                 *trial = None;

@@ -73,8 +73,7 @@ impl Fields {
 
     fn nodal(&self, density: Density, rule: NodalRule) -> SizeField {
         let mean = self.mean_length();
-        let spacing =
-            self.node_spacing(density).into_iter().map(|h| h.unwrap_or(mean)).collect();
+        let spacing = self.node_spacing(density).into_iter().map(|h| h.unwrap_or(mean)).collect();
         SizeField::Nodal(NodalField::new(self.region.clone(), self.points.clone(), spacing, rule))
     }
 
@@ -106,9 +105,10 @@ impl Fields {
 
     /// Predicts the number of triangles; stops soon after `limit`.
     pub(super) fn predict(&self, limit: usize) -> Prediction {
-        let cover = self.region.triangles().map(|t| {
-            (t, self.region.corners(t).map(|v| self.points[v.index()]))
-        });
+        let cover = self
+            .region
+            .triangles()
+            .map(|t| (t, self.region.corners(t).map(|v| self.points[v.index()])));
         predict(cover, |t, p| self.reachable(t, p), limit as f64)
     }
 

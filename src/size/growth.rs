@@ -196,10 +196,7 @@ mod tests {
     use super::*;
 
     fn exact(sources: &[Source], growth: f64, p: Point2) -> f64 {
-        sources
-            .iter()
-            .map(|s| s.spacing + growth * s.at.distance(p))
-            .fold(f64::INFINITY, f64::min)
+        sources.iter().map(|s| s.spacing + growth * s.at.distance(p)).fold(f64::INFINITY, f64::min)
     }
 
     fn circle(n: u32, radius: f64, spacing: f64) -> impl Iterator<Item = Source> {

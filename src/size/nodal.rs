@@ -96,9 +96,8 @@ impl NodalField {
     /// Barycentric coordinates of `p`, rounded.
     fn barycentric(&self, t: TriangleId, p: Point2) -> [f64; 3] {
         let [a, b, c] = self.background.corners(t).map(|v| self.points[v.index()]);
-        let area = |u: Point2, v: Point2, w: Point2| {
-            (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x)
-        };
+        let area =
+            |u: Point2, v: Point2, w: Point2| (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
         let whole = area(a, b, c);
         if whole > 0.0 {
             [area(b, c, p) / whole, area(c, a, p) / whole, area(a, b, p) / whole]
