@@ -61,7 +61,7 @@ impl Match {
 pub(super) fn domain_vertices(sound: &Sound<'_>, region: &Region) -> Vec<u32> {
     let z = sound.mesh.points.first().map_or(0.0, |p| p[2]);
     let count = sound.mesh.points.len() as u32;
-    let vertex = |(i, &[x, y]): (u32, &P2)| sound.index.find(&[x, y, z]).unwrap_or(count + i);
+    let vertex = |(i, &[x, y]): (u32, &P2)| sound.point_at(&[x, y, z]).unwrap_or(count + i);
     (0u32..).zip(&region.points).map(vertex).collect()
 }
 

@@ -30,7 +30,7 @@ pub(super) fn check(
     out: &mut Collector<'_>,
 ) -> DeviationStatistics {
     let vertices = domain_vertices(inner.sound, inner.region);
-    report_lost_points(inner, &vertices, out);
+    report_lost_points(inner, &vertices, concerned, out);
     let mut subdivided = matched.subdivided.clone();
     let (chains, lost) = follow_constraints(inner, &vertices);
     subdivided.extend(chains);
@@ -51,10 +51,19 @@ pub(super) fn check(
     statistics
 }
 
-fn report_lost_points(inner: &Inner<'_>, vertices: &[u32], out: &mut Collector<'_>) {
+/// A point of the file that no triangle uses is no vertex.
+fn report_lost_points(
+    inner: &Inner<'_>,
+    vertices: &[u32],
+    concerned: &mut BTreeSet<u32>,
+    out: &mut Collector<'_>,
+) {
     for &point in &inner.region.isolated {
-        if (vertices[point as usize] as usize) < inner.sound.mesh.points.len() {
-            continue;
+        let vertex = vertices[point as usize];
+        match inner.sound.used.get(vertex as usize) {
+            Some(true) => continue,
+            Some(false) => drop(concerned.insert(vertex)),
+            None => {}
         }
         out.add(Id::PointLost, || {
             let [x, y] = inner.region.points[point as usize];

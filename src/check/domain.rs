@@ -223,9 +223,7 @@ pub(super) fn place(domain: &Domain, points: &[u32], source: Option<Source>) -> 
 
 fn show_place(place: &Place) -> Option<String> {
     match place {
-        Place::Line(line) => Some(format!("line {line}")),
-        Place::NodeLine(line) => Some(format!("line {line} of the .node file")),
-        Place::Path(path) => Some(path.clone()),
         Place::Made => None,
+        known => Some(known.to_string()),
     }
 }

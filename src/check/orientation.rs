@@ -10,6 +10,7 @@ use super::id::Id;
 use super::lattice::Plane;
 use super::report::{Collector, Draft, show_triangle, show_vertex};
 use super::structure::Sound;
+use super::topology;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -40,6 +41,15 @@ pub(super) fn orient(
     out: &mut Collector<'_>,
 ) -> Oriented {
     let mut signs = scan(plane, &sound.triangles);
+    if !signs.negative.is_empty() {
+        // A reversed copy of a triangle is a duplicate, not a fold.
+        let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
+        let copies = topology::report_duplicates(sound, &edges, out);
+        if !copies.is_empty() {
+            sound.remove(&copies);
+            signs = scan(plane, &sound.triangles);
+        }
+    }
     let count = sound.triangles.len();
     let clockwise = signs.negative.len();
     for &t in &signs.zero {

@@ -94,14 +94,14 @@ fn check_plane(run: &mut Run<'_>, domain: Option<&Domain>) {
     topology::report_crowded_edges(&sound, &edges, &mut run.out);
     let parts = topology::survey(&sound, &edges);
     if given.is_none() {
-        topology::report_bow_ties(&sound, &edges, &parts, &mut run.out);
+        topology::report_bow_ties(&covered, &parts, &concerned, &mut run.out);
     }
     if let Some((domain, region)) = given {
         let inner = constraint::Inner { plane: &plane, sound: &sound, domain, region };
         run.statistics.deviation =
             Some(constraint::check(&inner, &matched, run.options, &mut concerned, &mut run.out));
     }
-    structure::report_unused(&sound, &concerned, &mut run.out);
+    report_unused(run, &sound, &concerned);
     check_delaunay(run, &covered, region.as_ref());
     parts.describe(&edges, &mut run.statistics);
     describe_area(run, &oriented, &matched, region.as_ref());
@@ -149,6 +149,15 @@ fn build_edges(
     let inverted = oriented.inverted.iter().filter_map(renumbered).collect();
     sound.remove(&copies);
     (Edges::of(&sound.triangles, sound.mesh.points.len()), inverted)
+}
+
+/// Checks M6, unless a triangle that names a wrong point may have meant one that seems unused.
+pub(super) fn report_unused(run: &mut Run<'_>, sound: &Sound<'_>, concerned: &BTreeSet<u32>) {
+    if run.out.has(Id::BadReference) || run.out.has(Id::RepeatedVertex) {
+        run.skip(&[Id::UnusedVertex], "triangles with wrong references may have meant any point");
+    } else {
+        structure::report_unused(sound, concerned, &mut run.out);
+    }
 }
 
 fn check_delaunay(run: &mut Run<'_>, covered: &Covered<'_>, region: Option<&Region>) {

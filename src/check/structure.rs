@@ -21,14 +21,22 @@ pub(super) struct Sound<'a> {
     pub(super) canonical: Option<Vec<u32>>,
     /// Whether a triangle of the file uses the point.
     pub(super) used: Vec<bool>,
-    /// The vertices by coordinates.
-    pub(super) index: PointIndex<'a, 3>,
+    /// The points in use by coordinates.
+    index: PointIndex<'a, 3>,
+    /// The other finite points by coordinates, if there are any.
+    unused_index: Option<PointIndex<'a, 3>>,
 }
 
 impl Sound<'_> {
     /// Index in the file of a sound triangle.
     pub(super) fn origin(&self, triangle: u32) -> u32 {
         self.origin.as_ref().map_or(triangle, |origin| origin[triangle as usize])
+    }
+
+    /// The point of the mesh at these coordinates: one in use if there is one.
+    pub(super) fn point_at(&self, point: &[f64; 3]) -> Option<u32> {
+        let unused = || self.unused_index.as_ref()?.find(point);
+        self.index.find(point).or_else(unused)
     }
 
     /// Leaves out triangles (sorted indices) that another finding has dealt with.
@@ -50,9 +58,15 @@ impl Sound<'_> {
 /// known which of them another finding explains.
 pub(super) fn survey<'a>(mesh: &'a MeshData, out: &mut Collector<'_>) -> Sound<'a> {
     let finite = find_not_finite(mesh, out);
+    report_bad_edges(mesh, out);
     let mut used = vec![false; mesh.points.len()];
     let faulty = find_faulty_triangles(mesh, &finite, &mut used, out);
     let (index, canonical) = find_duplicate_points(mesh, &finite, &used, out);
+    let is_finite = |v: u32| finite.get(v as usize).copied().unwrap_or(true);
+    let is_unused = |v: u32| !used[v as usize] && is_finite(v);
+    let unused_index = (0..mesh.points.len() as u32)
+        .any(is_unused)
+        .then(|| PointIndex::new(&mesh.points, is_unused).0);
     let mut sound = Sound {
         mesh,
         triangles: Cow::Borrowed(&mesh.triangles),
@@ -61,6 +75,7 @@ pub(super) fn survey<'a>(mesh: &'a MeshData, out: &mut Collector<'_>) -> Sound<'
         canonical,
         used,
         index,
+        unused_index,
     };
     if !faulty.is_empty() {
         sound.remove(&faulty);
@@ -139,6 +154,28 @@ fn report_references(mesh: &MeshData, t: u32, out: &mut Collector<'_>) {
                 .vertices(known)
                 .measured("value", value)
         });
+    }
+}
+
+/// One finding for each marked edge that names a point that does not exist.
+fn report_bad_edges(mesh: &MeshData, out: &mut Collector<'_>) {
+    let n = mesh.points.len();
+    for bad in &mesh.bad_edges {
+        out.add(Id::BadReference, || {
+            let text = format!(
+                "marked edge {} names point {}; the mesh has {n} points",
+                bad.edge, bad.value
+            );
+            Draft::new(Id::BadReference, text)
+        });
+    }
+    for (i, edge) in mesh.edges.iter().enumerate() {
+        if let Some(v) = edge.vertices.into_iter().find(|&v| v as usize >= n) {
+            out.add(Id::BadReference, || {
+                let text = format!("marked edge {i} names point {v}; the mesh has {n} points");
+                Draft::new(Id::BadReference, text)
+            });
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 //! ties, parts and loops.
 
 use super::chain::Groups;
+use super::coverage::Covered;
 use super::edges::{Edges, NONE};
 use super::id::Id;
 use super::report::{Collector, Draft, Statistics, show_triangle, show_vertex};
@@ -93,7 +94,7 @@ pub(super) fn survey(sound: &Sound<'_>, edges: &Edges) -> Parts {
         of_triangle: (components > 1).then_some(labels),
         components,
         vertices: used.iter().filter(|&&u| u).count() as u64,
-        boundary_edges: edges.chain.len() as u64,
+        boundary_edges: boundary(edges).count() as u64,
         boundary_loops: count_loops(&sound.triangles, edges),
         triangles: triangles as u64,
     }
@@ -124,19 +125,22 @@ fn label(triangles: usize, twin: &[u32]) -> (Vec<u32>, u64) {
     (labels, u64::from(parts))
 }
 
+/// The edges of one triangle: those of the chain that are not irregular.
+fn boundary(edges: &Edges) -> impl Iterator<Item = &super::edges::ChainEdge> {
+    let irregular: BTreeSet<[u32; 2]> = edges.irregular.iter().map(|e| e.vertices).collect();
+    let ends = |e: &super::edges::ChainEdge| [e.from.min(e.to), e.from.max(e.to)];
+    edges.chain.iter().filter(move |e| !irregular.contains(&ends(e)))
+}
+
 /// Closed chains of boundary edges, each followed around the fan at its vertices: where loops touch
 /// at a vertex, each stays a loop of its own.
 fn count_loops(triangles: &[[u32; 3]], edges: &Edges) -> u64 {
     let next = |h: u32| h - h % 3 + (h + 1) % 3;
-    let starts: Vec<u32> = edges
-        .chain
-        .iter()
-        .filter_map(|e| {
-            let at = triangles[e.triangle as usize].iter().position(|&v| v == e.from)?;
-            let half_edge = 3 * e.triangle + at as u32;
-            (edges.twin[half_edge as usize] == NONE).then_some(half_edge)
-        })
-        .collect();
+    let half_edge = |e: &super::edges::ChainEdge| {
+        let at = triangles[e.triangle as usize].iter().position(|&v| v == e.from)?;
+        Some(3 * e.triangle + at as u32)
+    };
+    let starts: Vec<u32> = boundary(edges).filter_map(half_edge).collect();
     let position: BTreeMap<u32, usize> = starts.iter().enumerate().map(|(i, &h)| (h, i)).collect();
     let mut groups = Groups::new(starts.len());
     for (i, &start) in starts.iter().enumerate() {
@@ -167,19 +171,17 @@ impl Parts {
 ///
 /// Loops that touch at a vertex of one and the same part are no bow tie: that is how holes touch.
 pub(super) fn report_bow_ties(
-    sound: &Sound<'_>,
-    edges: &Edges,
+    covered: &Covered<'_>,
     parts: &Parts,
+    concerned: &BTreeSet<u32>,
     out: &mut Collector<'_>,
 ) {
     let Some(labels) = &parts.of_triangle else { return };
-    let explained: BTreeSet<u32> = sound
-        .dropped
-        .iter()
-        .flatten()
-        .copied()
-        .chain(edges.irregular.iter().flat_map(|e| e.vertices))
-        .collect();
+    let (sound, edges) = (covered.sound, covered.edges);
+    // Where something else is wrong, parts may hang together by a vertex because of it.
+    let mut explained = concerned.clone();
+    explained.extend(sound.dropped.iter().flatten());
+    explained.extend(edges.irregular.iter().flat_map(|e| e.vertices));
     let mut joints: BTreeMap<u32, BTreeMap<u32, u32>> = BTreeMap::new();
     for edge in &edges.chain {
         let part = labels[edge.triangle as usize];

@@ -182,8 +182,8 @@ pub struct Measured {
     pub exponent: i32,
 }
 
-/// Values of the metrics that need no neighbours, in the order of [`Metric`], up to the area.
-pub(crate) const OWN_METRICS: usize = 10;
+/// How many metrics need no neighbours: the first ones of [`Metric`], up to the area.
+pub const OWN_METRICS: usize = 10;
 
 impl Measured {
     /// Area in the unit of the mesh.

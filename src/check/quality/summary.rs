@@ -16,7 +16,6 @@ pub(super) struct Tally {
     pub(super) min: f64,
     max: f64,
     sum: f64,
-    counts: Vec<u64>,
     /// Value and triangle, worst first.
     worst: Vec<(f64, u32)>,
     /// For each gate on this metric, its position and how many values meet it.
@@ -26,19 +25,12 @@ pub(super) struct Tally {
 impl Tally {
     /// Tallies the values of consecutive triangles from `first` on.
     pub(super) fn of(metric: Metric, values: &[f64], first: u32, gates: &[Gate]) -> Self {
-        let bounds = bounds(metric);
         let mut tally = Self::empty(metric);
+        if !tally.add_finite(values) {
+            values.iter().for_each(|&value| tally.add_any(value));
+        }
         for (t, &value) in (first..).zip(values) {
             tally.note_worst(value, t);
-            if !value.is_finite() {
-                tally.infinite += 1;
-                continue;
-            }
-            tally.finite += 1;
-            tally.min = tally.min.min(value);
-            tally.max = tally.max.max(value);
-            tally.sum += value;
-            tally.counts[bounds.iter().take_while(|&&b| b <= value).count()] += 1;
         }
         for (position, gate) in gates.iter().enumerate().filter(|(_, g)| g.metric == metric) {
             tally
@@ -46,6 +38,39 @@ impl Tally {
                 .push((position, values.iter().filter(|&&v| gate.is_met_by(v)).count() as u64));
         }
         tally
+    }
+
+    /// Adds values in eight lanes, in a fixed order, if all are finite; else adds nothing.
+    fn add_finite(&mut self, values: &[f64]) -> bool {
+        let (mut sums, mut lows, mut highs) =
+            ([0.0; 8], [f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+        let mut suspicious = false;
+        for lane in values.chunks(8) {
+            for (k, &value) in lane.iter().enumerate() {
+                sums[k] += value;
+                lows[k] = lows[k].min(value);
+                highs[k] = highs[k].max(value);
+                suspicious |= !value.is_finite();
+            }
+        }
+        if !suspicious {
+            self.finite += values.len() as u64;
+            self.sum += sums.iter().sum::<f64>();
+            self.min = lows.iter().copied().fold(self.min, f64::min);
+            self.max = highs.iter().copied().fold(self.max, f64::max);
+        }
+        !suspicious
+    }
+
+    fn add_any(&mut self, value: f64) {
+        if value.is_finite() {
+            self.finite += 1;
+            self.min = self.min.min(value);
+            self.max = self.max.max(value);
+            self.sum += value;
+        } else {
+            self.infinite += 1;
+        }
     }
 
     fn empty(metric: Metric) -> Self {
@@ -56,7 +81,6 @@ impl Tally {
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
             sum: 0.0,
-            counts: vec![0; bounds(metric).len() + 1],
             worst: Vec::with_capacity(WORST + 1),
             met: Vec::new(),
         }
@@ -80,7 +104,6 @@ impl Tally {
         self.min = self.min.min(next.min);
         self.max = self.max.max(next.max);
         self.sum += next.sum;
-        self.counts.iter_mut().zip(&next.counts).for_each(|(a, b)| *a += b);
         next.worst.iter().for_each(|&(value, t)| self.note_worst(value, t));
         for &(position, count) in &next.met {
             match self.met.iter_mut().find(|m| m.0 == position) {
@@ -101,22 +124,38 @@ fn is_worse(metric: Metric, a: f64, b: f64) -> bool {
     badness(a) > badness(b)
 }
 
-/// Bounds of the histogram's intervals.
-fn bounds(metric: Metric) -> &'static [f64] {
+/// Bounds of the histogram's intervals: numbers of at most eight significant bits, so that counts by
+/// the upper half of a single-precision number give the histogram.
+fn bounds(metric: Metric) -> &'static [f32] {
     match metric {
         Metric::MinAngle => &[5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0],
         Metric::MaxAngle => {
             &[65.0, 70.0, 75.0, 80.0, 90.0, 100.0, 110.0, 120.0, 135.0, 150.0, 165.0]
         }
         Metric::ScaledJacobian | Metric::Shape | Metric::EquiangleSkew => {
-            &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
+            &[0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.9375]
         }
-        Metric::RadiusEdgeRatio => &[0.6, 0.7, 0.8, 1.0, 1.2, 1.414, 2.0, 3.0, 5.0, 10.0],
-        Metric::Area => &[1e-12, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 1e3, 1e6],
-        Metric::AreaSpread => &[1.5, 2.0, 5.0, 10.0, 100.0, 1e3, 1e4, 1e6],
-        _ => &[1.05, 1.1, 1.2, 1.3, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0],
+        Metric::RadiusEdgeRatio => &[0.625, 0.75, 0.875, 1.0, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0],
+        Metric::Area => AREAS,
+        Metric::AreaSpread => &[1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0, 1024.0, 65536.0],
+        _ => &[1.0625, 1.125, 1.25, 1.375, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0],
     }
 }
+
+/// Powers of 2^6 from 2^-36 to 2^24.
+const AREAS: &[f32] = &[
+    1.455_191_5e-11,
+    9.313_226e-10,
+    5.960_464_5e-8,
+    3.814_697_3e-6,
+    2.441_406_3e-4,
+    0.015_625,
+    1.0,
+    64.0,
+    4096.0,
+    262_144.0,
+    16_777_216.0,
+];
 
 /// Puts the tallies of all pieces together.
 pub(super) fn summarise(
@@ -138,17 +177,15 @@ pub(super) fn summarise(
         .map(|total| {
             let column =
                 if total.metric == Metric::AreaSpread { Metric::Area } else { total.metric };
-            let mut percentiles = percentiles(columns, column as usize, count);
-            if total.metric == Metric::AreaSpread {
-                percentiles = percentiles.map(|p| p.map(|area| area / smallest));
-            }
-            summary(input, total, percentiles)
+            let column = Column { columns, column: column as usize, count };
+            let scale = if total.metric == Metric::AreaSpread { 1.0 / smallest } else { 1.0 };
+            summary(input, total, &column.spread(bounds(total.metric), scale))
         })
         .collect();
     Measurements { quality: Quality { metrics, triangles: count as u64 }, met }
 }
 
-fn summary(input: &Input<'_>, total: &Tally, percentiles: [Option<f64>; 3]) -> MetricSummary {
+fn summary(input: &Input<'_>, total: &Tally, spread: &Spread) -> MetricSummary {
     let some = |value: f64| (total.finite > 0).then_some(value);
     let worst = |&(value, t): &(f64, u32)| Worst {
         triangle: (input.place)(t),
@@ -163,12 +200,12 @@ fn summary(input: &Input<'_>, total: &Tally, percentiles: [Option<f64>; 3]) -> M
         min: some(total.min),
         mean: some(total.sum / total.finite as f64).filter(|m| m.is_finite()),
         max: some(total.max),
-        percentile_1: percentiles[0],
-        percentile_50: percentiles[1],
-        percentile_99: percentiles[2],
+        percentile_1: spread.percentiles[0],
+        percentile_50: spread.percentiles[1],
+        percentile_99: spread.percentiles[2],
         histogram: Histogram {
-            bounds: bounds(total.metric).to_vec(),
-            counts: total.counts.clone(),
+            bounds: bounds(total.metric).iter().map(|&b| f64::from(b)).collect(),
+            counts: spread.counts.clone(),
         },
         worst: total.worst.iter().map(worst).collect(),
     }
@@ -184,37 +221,89 @@ fn from_ordered(key: u32) -> f32 {
     f32::from_bits(if key >> 31 == 1 { key & !(1 << 31) } else { !key })
 }
 
-/// The values below which 1, 50 and 99 of a hundred triangles lie (nearest rank), by two passes of
-/// radix selection over 16 bits each: exact in single precision, and free of any order of threads.
-fn percentiles(columns: &[f32], column: usize, count: usize) -> [Option<f64>; 3] {
-    let values = || {
-        columns.chunks(CHUNK * COLUMNS).enumerate().flat_map(move |(piece, block)| {
-            let length = CHUNK.min(count - piece * CHUNK);
-            block[column * CHUNK..column * CHUNK + length].iter().map(|&v| ordered(v))
+/// The values of one metric, in single precision.
+struct Column<'a> {
+    columns: &'a [f32],
+    column: usize,
+    count: usize,
+}
+
+/// How the values of a metric are spread.
+struct Spread {
+    /// The values that 1, 50 and 99 of a hundred triangles do not exceed.
+    percentiles: [Option<f64>; 3],
+    /// Finite values by the histogram's intervals.
+    counts: Vec<u64>,
+}
+
+impl Column<'_> {
+    fn pieces(&self) -> impl Iterator<Item = &[f32]> {
+        self.columns.chunks(CHUNK * COLUMNS).enumerate().map(|(piece, block)| {
+            let length = CHUNK.min(self.count - piece * CHUNK);
+            &block[self.column * CHUNK..self.column * CHUNK + length]
         })
-    };
-    let ranks = [1usize, 50, 99].map(|p| (count * p).div_ceil(100).max(1) as u64);
-    let mut coarse = vec![0u64; 1 << 16];
-    values().for_each(|key| coarse[(key >> 16) as usize] += 1);
-    let starts = ranks.map(|rank| find_rank(&coarse, rank));
-    let mut fine: [Vec<u64>; 3] = std::array::from_fn(|_| vec![0u64; 1 << 16]);
-    for key in values() {
-        for (start, fine) in starts.iter().zip(&mut fine) {
-            if key >> 16 == start.0 {
+    }
+
+    /// Percentiles by nearest rank and the histogram, by two passes of radix selection over 16 bits
+    /// each: exact in single precision, and free of any order of threads.
+    fn spread(&self, bounds: &[f32], scale: f64) -> Spread {
+        let mut coarse = vec![0u32; 1 << 16];
+        for piece in self.pieces() {
+            piece.iter().for_each(|&v| coarse[(ordered(v) >> 16) as usize] += 1);
+        }
+        let ranks = [1usize, 50, 99].map(|p| (self.count * p).div_ceil(100).max(1) as u64);
+        let starts = ranks.map(|rank| find_rank(&coarse, rank));
+        let percentiles = starts.map(|(high, rank)| {
+            let value = f64::from(self.select(high, rank)) * scale;
+            value.is_finite().then_some(value)
+        });
+        let counts = if scale == 1.0 {
+            histogram(&coarse, bounds)
+        } else {
+            self.scaled_histogram(bounds, scale)
+        };
+        Spread { percentiles, counts }
+    }
+
+    /// The value of a rank (from 1) among those with the given upper half.
+    fn select(&self, high: u32, rank: u64) -> f32 {
+        let mut fine = vec![0u32; 1 << 16];
+        for piece in self.pieces() {
+            for key in piece.iter().map(|&v| ordered(v)).filter(|key| key >> 16 == high) {
                 fine[(key & 0xffff) as usize] += 1;
             }
         }
+        from_ordered((high << 16) | find_rank(&fine, rank).0)
     }
-    std::array::from_fn(|i| {
-        let (high, rest) = starts[i];
-        let value = from_ordered((high << 16) | find_rank(&fine[i], rest).0);
-        value.is_finite().then_some(f64::from(value))
-    })
+
+    fn scaled_histogram(&self, bounds: &[f32], scale: f64) -> Vec<u64> {
+        let mut counts = vec![0; bounds.len() + 1];
+        for value in
+            self.pieces().flatten().map(|&v| f64::from(v) * scale).filter(|v| v.is_finite())
+        {
+            counts[bounds.partition_point(|&b| f64::from(b) <= value)] += 1;
+        }
+        counts
+    }
+}
+
+/// Finite values by interval, from the counts by upper halves.
+fn histogram(coarse: &[u32], bounds: &[f32]) -> Vec<u64> {
+    let cuts = bounds.iter().map(|&b| (ordered(b) >> 16) as usize);
+    let first = (ordered(f32::NEG_INFINITY) >> 16) as usize + 1;
+    let last = (ordered(f32::INFINITY) >> 16) as usize;
+    let mut from = first;
+    let mut counts = Vec::with_capacity(bounds.len() + 1);
+    for to in cuts.chain([last]) {
+        counts.push(coarse[from..to].iter().map(|&c| u64::from(c)).sum());
+        from = to;
+    }
+    counts
 }
 
 /// The bucket that holds the rank-th value (from 1), and its rank within.
-fn find_rank(counts: &[u64], mut rank: u64) -> (u32, u64) {
-    for (bucket, &count) in (0u32..).zip(counts) {
+fn find_rank(counts: &[u32], mut rank: u64) -> (u32, u64) {
+    for (bucket, count) in (0u32..).zip(counts.iter().map(|&c| u64::from(c))) {
         if rank <= count {
             return (bucket, rank);
         }
@@ -249,7 +338,34 @@ mod tests {
         let mut sorted: Vec<f32> = (0..count).map(value).collect();
         sorted.sort_by(f32::total_cmp);
         let wanted = [1, 50, 99].map(|p| Some(f64::from(sorted[(count * p).div_ceil(100) - 1])));
-        assert_eq!(percentiles(&columns, 2, count), wanted);
+        let column = Column { columns: &columns, column: 2, count };
+        let spread = column.spread(&[-500.0, 0.0, 1024.0], 1.0);
+        assert_eq!(spread.percentiles, wanted);
+        let below = |b: f32| sorted.partition_point(|&v| v < b) as u64;
+        let cuts = [below(-500.0), below(0.0), below(1024.0), count as u64];
+        let counts = [cuts[0], cuts[1] - cuts[0], cuts[2] - cuts[1], cuts[3] - cuts[2]];
+        assert_eq!(spread.counts, counts);
+        assert_eq!(column.scaled_histogram(&[-500.0, 0.0, 1024.0], 1.0), counts);
+    }
+
+    #[test]
+    fn bounds_have_eight_significant_bits_and_rise() {
+        for metric in Metric::all() {
+            let bounds = bounds(metric);
+            assert!(bounds.windows(2).all(|w| w[0] < w[1]), "{metric}");
+            assert!(bounds.iter().all(|b| ordered(*b) & 0xffff == 0), "{metric}");
+        }
+    }
+
+    #[test]
+    fn lanes_give_up_on_values_that_are_not_finite() {
+        let finite: Vec<f64> = (0..20).map(f64::from).collect();
+        let tally = Tally::of(Metric::Area, &finite, 0, &[]);
+        assert_eq!((tally.finite, tally.min, tally.max, tally.sum), (20, 0.0, 19.0, 190.0));
+        let mut mixed = finite.clone();
+        mixed[7] = f64::INFINITY;
+        let tally = Tally::of(Metric::Area, &mixed, 0, &[]);
+        assert_eq!((tally.finite, tally.infinite, tally.sum), (19, 1, 183.0));
     }
 
     #[test]
