@@ -29,6 +29,7 @@ pub mod point;
 pub mod check;
 pub mod draw;
 pub mod format;
+pub mod torture;
 
 #[cfg(feature = "cli")]
 pub mod cli;

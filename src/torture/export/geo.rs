@@ -1,0 +1,63 @@
+//! Gmsh's `.geo` script: points, lines, curve loops, plane surfaces; constraints are embedded.
+
+use super::nesting::levels;
+use super::{BoundaryForm, ExportError};
+use crate::domain::Domain;
+use std::fmt::Write;
+
+/// The script. Each point's mesh size is the mean length of its edges.
+pub fn write(domain: &Domain) -> Result<String, ExportError> {
+    let what = "which of these touching loops lies in which";
+    let levels = levels(domain).ok_or_else(|| BoundaryForm::Geo.cannot_say(what))?;
+    let mut out = String::from("SetFactory(\"Built-in\");\n");
+    let mut say = |text: std::fmt::Arguments| {
+        // Writing to a string cannot fail.
+        let _ = out.write_fmt(text);
+    };
+    for (i, (p, size)) in domain.points.iter().zip(sizes(domain)).enumerate() {
+        say(format_args!("Point({}) = {{{:?}, {:?}, 0, {size:?}}};\n", i + 1, p.x, p.y));
+    }
+    for (i, [a, b]) in domain.edges().enumerate() {
+        say(format_args!("Line({}) = {{{}, {}}};\n", i + 1, a + 1, b + 1));
+    }
+    let mut line = 1;
+    for (i, of) in domain.loops.iter().enumerate() {
+        let lines = list(line..line + of.vertices.len());
+        line += of.vertices.len();
+        say(format_args!("Curve Loop({}) = {{{lines}}};\n", i + 1));
+    }
+    let mut surfaces = Vec::new();
+    for i in (0..levels.len()).filter(|&i| levels[i].is_outer()) {
+        let holes = (0..levels.len()).filter(|&j| levels[j].around == Some(i) && j != i);
+        let loops = list(std::iter::once(i).chain(holes).map(|j| j + 1));
+        surfaces.push(i + 1);
+        say(format_args!("Plane Surface({}) = {{{loops}}};\n", i + 1));
+    }
+    // The format wants the surface that an embedded line lies in: with one surface it is that.
+    if !domain.segments.is_empty() && surfaces.len() > 1 {
+        return Err(BoundaryForm::Geo.cannot_say("segments without naming their surface"));
+    }
+    if !domain.segments.is_empty() {
+        let lines = list(line..line + domain.segments.len());
+        say(format_args!("Curve{{{lines}}} In Surface{{{}}};\n", list(surfaces.iter().copied())));
+    }
+    Ok(out)
+}
+
+fn list(numbers: impl Iterator<Item = usize>) -> String {
+    numbers.map(|n| n.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn sizes(domain: &Domain) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0u32); domain.points.len()];
+    for [a, b] in domain.edges() {
+        let length = domain.points[a as usize].distance(domain.points[b as usize]);
+        for v in [a, b] {
+            let sum = &mut sums[v as usize];
+            *sum = (sum.0 + length, sum.1 + 1);
+        }
+    }
+    sums.into_iter()
+        .map(|(sum, count)| if count == 0 { 1.0 } else { sum / f64::from(count) })
+        .collect()
+}

@@ -1,0 +1,54 @@
+//! Loops as Triangle has them: segments, and a point in every hole.
+
+use super::nesting::{is_inside, levels};
+use super::{BoundaryForm, ExportError};
+use crate::domain::{Domain, Inside, Segment};
+use crate::point::Point2;
+
+/// The same domain by Triangle's rule: a hole point inside every loop that the domain does not lie
+/// in.
+pub fn carved(domain: &Domain) -> Result<Domain, ExportError> {
+    let mut carved = domain.clone();
+    carved.loops.clear();
+    let loops = domain.loops.iter().flat_map(|l| l.edges().zip(l.markers.iter().copied()));
+    carved.segments = loops.map(|(vertices, marker)| Segment { vertices, marker }).collect();
+    carved.segments.extend(&domain.segments);
+    if let Inside::EvenOdd = domain.inside {
+        carved.inside = Inside::Carve(holes(domain)?);
+    }
+    Ok(carved)
+}
+
+fn holes(domain: &Domain) -> Result<Vec<Point2>, ExportError> {
+    let cannot = |what| BoundaryForm::Poly.cannot_say(what);
+    let levels = levels(domain).ok_or(cannot("which of these touching loops lies in which"))?;
+    let holes = (0..levels.len()).filter(|&i| !levels[i].is_outer());
+    holes
+        .map(|hole| {
+            let inner: Vec<usize> =
+                (0..levels.len()).filter(|&i| levels[i].around == Some(hole)).collect();
+            point_in(domain, hole, &inner).ok_or(cannot("a hole with no point in it"))
+        })
+        .collect()
+}
+
+/// A point inside a loop and outside the loops directly in it.
+fn point_in(domain: &Domain, hole: usize, inner: &[usize]) -> Option<Point2> {
+    let is_good = |p: &Point2| {
+        is_inside(domain, hole, *p) == Some(true)
+            && inner.iter().all(|&i| is_inside(domain, i, *p) == Some(false))
+    };
+    let vertices = &domain.loops[hole].vertices;
+    let n = vertices.len();
+    let at = |i: usize| domain.points[vertices[i % n] as usize];
+    (0..n).find_map(|i| {
+        let (a, b, c) = (at(i), at(i + 1), at(i + 2));
+        let middle = |p: f64, q: f64| p / 2.0 + q / 2.0;
+        let mut p = Point2::new(middle(a.x, c.x), middle(a.y, c.y));
+        // Ever nearer to the corner, until nothing else is between.
+        (0..60).find_map(|_| {
+            p = Point2::new(middle(p.x, b.x), middle(p.y, b.y));
+            is_good(&p).then_some(p)
+        })
+    })
+}

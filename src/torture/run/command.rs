@@ -1,0 +1,211 @@
+//! One run of a foreign program, with limits: its crashes, hangs and children stay its own.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// Limits of one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Wall-clock time.
+    pub time: Duration,
+    /// Address space in bytes. Kept by the shell's `ulimit -v`, where that works (Linux, the BSDs);
+    /// macOS and Windows have no such limit and ignore it.
+    pub memory: u64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// With this exit code.
+    Exit(i32),
+    /// By this signal.
+    Signal(i32),
+    /// It was killed, with its children, when its time was up.
+    TimedOut,
+}
+
+/// A run that is over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended {
+    /// How.
+    pub ending: Ending,
+    /// The end of what it printed on standard output and standard error.
+    pub said: String,
+    /// How long it took.
+    pub time: Duration,
+}
+
+/// As much of the output is kept.
+const TAIL: u64 = 2000;
+
+/// Runs a command line in a folder by the shell.
+///
+/// # Errors
+/// When the shell cannot be started, or the folder not written.
+pub fn execute(command: &str, folder: &Path, limits: &Limits) -> io::Result<Ended> {
+    let path = folder.join("output.txt");
+    let output = File::create(&path)?;
+    let mut shell = shell(command, limits);
+    shell.current_dir(folder).stdin(Stdio::null());
+    shell.stdout(output.try_clone()?).stderr(output);
+    let start = Instant::now();
+    let mut child = shell.spawn()?;
+    let status = wait(&mut child, start, limits.time)?;
+    // Whatever it started and left behind goes with it.
+    kill_group(&child);
+    let status = match status {
+        Some(status) => Some(status),
+        None => {
+            child.kill().ok();
+            child.wait()?;
+            None
+        }
+    };
+    let time = start.elapsed();
+    let ending = status.map_or(Ending::TimedOut, ending);
+    Ok(Ended { ending, said: tail(&path)?, time })
+}
+
+/// Waits for the end, looking ever less often; `None` when the time is up.
+fn wait(child: &mut Child, start: Instant, time: Duration) -> io::Result<Option<ExitStatus>> {
+    let mut pause = Duration::from_micros(500);
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if start.elapsed() >= time {
+            return Ok(None);
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(20));
+    }
+}
+
+/// A shell in a process group of its own. The limit on processor time is a backstop for runs
+/// whose parent was killed; that on file size keeps a chatterbox from filling the disk.
+#[cfg(unix)]
+fn shell(command: &str, limits: &Limits) -> Command {
+    use std::os::unix::process::CommandExt;
+    let kilobytes = limits.memory / 1024;
+    let seconds = 100 * (1 + limits.time.as_secs());
+    let script = format!(
+        "ulimit -v {kilobytes} 2>/dev/null; ulimit -t {seconds} 2>/dev/null; \
+         ulimit -c 0 2>/dev/null; ulimit -f 8388608 2>/dev/null; {command}"
+    );
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).process_group(0);
+    shell
+}
+
+#[cfg(not(unix))]
+fn shell(command: &str, _limits: &Limits) -> Command {
+    let mut shell = Command::new("cmd");
+    shell.args(["/C", command]);
+    shell
+}
+
+#[cfg(unix)]
+fn kill_group(child: &Child) {
+    // The group may be gone already.
+    let group = rustix::process::Pid::from_child(child);
+    let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+}
+
+#[cfg(not(unix))]
+fn kill_group(_child: &Child) {}
+
+#[cfg(unix)]
+fn ending(status: ExitStatus) -> Ending {
+    use std::os::unix::process::ExitStatusExt;
+    match (status.signal(), status.code()) {
+        (Some(signal), _) => Ending::Signal(signal),
+        // A shell tells of a signal in this way.
+        (None, Some(code @ 129..=192)) => Ending::Signal(code - 128),
+        (None, code) => Ending::Exit(code.unwrap_or(-1)),
+    }
+}
+
+#[cfg(not(unix))]
+fn ending(status: ExitStatus) -> Ending {
+    match status.code() {
+        // Windows has no signals: an exception is a negative exit code.
+        Some(code) if code < 0 => Ending::Signal(code),
+        code => Ending::Exit(code.unwrap_or(-1)),
+    }
+}
+
+fn tail(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    let length = fs::metadata(path)?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(TAIL)))?;
+    let mut bytes = Vec::new();
+    file.take(TAIL).read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).trim().to_owned())
+}
+
+/// A path as one word of a command line.
+#[must_use]
+pub fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    match cfg!(unix) {
+        true => format!("'{}'", text.replace('\'', "'\\''")),
+        false => format!("\"{text}\""),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn run(command: &str, milliseconds: u64) -> Ended {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let limits = Limits { time: Duration::from_millis(milliseconds), memory: 1 << 30 };
+        execute(command, folder.path(), &limits).expect("sh is there")
+    }
+
+    // spec: R6
+    #[test]
+    fn exit_codes_signals_and_output_are_told() {
+        let ended = run("echo good; echo bad >&2; exit 3", 20_000);
+        assert_eq!(ended.ending, Ending::Exit(3));
+        assert_eq!(ended.said, "good\nbad");
+        assert_eq!(run("kill -SEGV $$", 20_000).ending, Ending::Signal(11));
+        assert_eq!(run("sh -c 'kill -ABRT $$'; exit $?", 20_000).ending, Ending::Signal(6));
+    }
+
+    // spec: R6
+    #[test]
+    fn a_hang_is_ended_with_all_its_children() {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let limits = Limits { time: Duration::from_millis(300), memory: 1 << 30 };
+        let command = "(sleep 2; touch survived) & sleep 60";
+        let ended = execute(command, folder.path(), &limits).expect("sh is there");
+        assert_eq!(ended.ending, Ending::TimedOut);
+        assert!(ended.time < Duration::from_secs(20), "{:?}", ended.time);
+        std::thread::sleep(Duration::from_millis(2500));
+        assert!(!folder.path().join("survived").exists(), "the child went on");
+    }
+
+    // spec: R6
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn memory_is_limited() {
+        assert_eq!(run("ulimit -v", 20_000).said, (1u64 << 20).to_string());
+    }
+
+    #[test]
+    fn only_the_end_of_a_long_output_is_kept() {
+        let ended = run("i=0; while [ $i -lt 2000 ]; do echo line $i; i=$((i+1)); done", 20_000);
+        assert!(ended.said.len() <= TAIL as usize && ended.said.ends_with("line 1999"));
+    }
+
+    #[test]
+    fn paths_are_one_word_each() {
+        assert_eq!(quoted(Path::new("a b")), "'a b'");
+        let ended = run(&format!("printf %s {}", quoted(Path::new("it's $HOME"))), 20_000);
+        assert_eq!(ended.said, "it's $HOME");
+    }
+}
