@@ -15,6 +15,7 @@ use crate::mesh::MeshData;
 use serde::Serialize;
 
 mod edges;
+mod findings;
 mod frame;
 mod html;
 mod layer;
@@ -27,6 +28,7 @@ mod path;
 mod png;
 mod text;
 
+pub use findings::highlights;
 pub use frame::{ParseViewError, View};
 pub use html::{Background, Viewer, html};
 pub use layer::{Better, Layer};
@@ -92,6 +94,9 @@ pub struct Highlight {
     pub edges: Vec<[u32; 2]>,
     /// Indices of points.
     pub vertices: Vec<u32>,
+    /// Places that are not points of the mesh: one pair of coordinates for a spot, more for a line
+    /// through them.
+    pub lines: Vec<Vec<[f64; 2]>>,
 }
 
 /// How a picture looks.

@@ -296,8 +296,18 @@ impl<'a> Drawing<'a> {
                 path.polyline(&cut.iter().map(|&p| self.frame.grid(p)).collect::<Vec<_>>());
             }
         }
+        for line in &highlight.lines {
+            let places: Vec<_> = line.iter().map(|&p| self.frame.place(p)).collect();
+            for piece in places.windows(2).filter(|w| w.iter().flatten().all(|x| x.is_finite())) {
+                let cut = self.frame.clip(piece);
+                seen.add(&cut);
+                path.polyline(&cut.iter().map(|&p| self.frame.grid(p)).collect::<Vec<_>>());
+            }
+        }
         self.mark_path(out, path, "fill=\"none\"", 2.4);
-        for place in highlight.vertices.iter().filter_map(|&v| self.finite_place(v)) {
+        let spots = highlight.lines.iter().filter(|line| line.len() == 1).flatten();
+        let spots = spots.map(|&p| self.frame.place(p)).filter(|p| p.iter().all(|x| x.is_finite()));
+        for place in highlight.vertices.iter().filter_map(|&v| self.finite_place(v)).chain(spots) {
             if self.frame.holds(place) {
                 seen.add(&[place]);
                 let [x, y] = place.map(text::pixels);

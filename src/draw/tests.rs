@@ -229,6 +229,12 @@ fn highlights_are_marked_numbered_and_listed() {
             triangles: vec![5000],
             edges: vec![[0, NO_POINT], [0, 1]],
             vertices: vec![NO_POINT, 3],
+            lines: vec![
+                vec![[0.5, 0.5]],
+                vec![[0.0, 0.0], [2.0, 2.0]],
+                vec![[f64::NAN, 0.0]],
+                vec![],
+            ],
         }])
         .collect();
     let mut panel = Panel::new(&mesh, "marked");
@@ -312,7 +318,7 @@ proptest! {
             ..MeshData::default()
         };
         let layer = Layer::new(label.clone(), values[..mesh.triangles.len()].to_vec(), Better::High);
-        let highlights = [Highlight { label: label.clone(), triangles: vec![0, 9], edges: vec![[0, 1]], vertices: vec![1] }];
+        let highlights = [Highlight { label: label.clone(), triangles: vec![0, 9], edges: vec![[0, 1]], vertices: vec![1], ..Highlight::default() }];
         let mut panel = Panel::new(&mesh, label).coloured(&layer);
         panel.highlights = &highlights;
         let svg = draw(panel);

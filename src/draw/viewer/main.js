@@ -92,10 +92,13 @@ function paintSpacing() {
   pen.stroke();
 }
 
+const unitOfPlace = ([x, y]) => [toUnit(points.frame, x, 0), toUnit(points.frame, y, 1), 0];
+
 /** Places of a finding in mesh units. */
 function placesOf(mark) {
   const corners = mark.triangles.filter((t) => drawable[t]).flatMap((t) => [0, 1, 2].map((c) => triangles[3 * t + c]));
-  return [...corners, ...mark.edges.flat(), ...mark.vertices].filter((v) => v < points.n).map((v) => unitOf(points, v));
+  const inMesh = [...corners, ...mark.edges.flat(), ...mark.vertices].filter((v) => v < points.n);
+  return [...inMesh.map((v) => unitOf(points, v)), ...mark.lines.flat().map(unitOfPlace)];
 }
 
 function paintMark(mark, i) {
@@ -111,8 +114,13 @@ function paintMark(mark, i) {
     for (const v of edge) pen.lineTo(...projectPoint(v).slice(0, 2));
     pen.stroke();
   }
-  for (const v of mark.vertices.filter((v) => v < points.n)) {
-    const [x, y] = projectPoint(v);
+  for (const line of mark.lines) {
+    pen.beginPath();
+    for (const place of line) pen.lineTo(...project(unitOfPlace(place)).slice(0, 2));
+    pen.stroke();
+  }
+  const spots = [...mark.vertices.filter((v) => v < points.n).map((v) => unitOf(points, v)), ...mark.lines.filter((l) => l.length === 1).flat().map(unitOfPlace)];
+  for (const [x, y] of spots.map(project)) {
     pen.beginPath();
     pen.arc(x, y, 3, 0, 2 * Math.PI);
     pen.fill();
