@@ -138,7 +138,7 @@ fn build_edges(
     out: &mut Collector<'_>,
 ) -> (Edges, Vec<u32>) {
     let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
-    let copies = topology::report_duplicates(sound, &edges, out);
+    let copies = topology::report_duplicates(sound, &edges, |_| false, out);
     if copies.is_empty() {
         return (edges, oriented.inverted.clone());
     }

@@ -71,7 +71,7 @@ pub(super) fn check(run: &mut Run<'_>) {
 /// The adjacency once duplicate triangles are left out.
 fn build_edges(sound: &mut Sound<'_>, out: &mut Collector<'_>) -> Edges {
     let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
-    let copies = topology::report_duplicates(sound, &edges, out);
+    let copies = topology::report_duplicates(sound, &edges, |_| false, out);
     if copies.is_empty() {
         return edges;
     }
