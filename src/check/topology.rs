@@ -79,6 +79,37 @@ pub(super) fn report_crowded_edges(sound: &Sound<'_>, edges: &Edges, out: &mut C
     }
 }
 
+/// Reports M22: marked edges of the file that no triangle has.
+pub(super) fn report_marked_edges(sound: &Sound<'_>, out: &mut Collector<'_>) {
+    let mesh = sound.mesh;
+    let exists = |v: u32| (v as usize) < mesh.points.len();
+    let given = mesh.edges.iter().map(|e| e.vertices).filter(|e| e.iter().all(|&v| exists(v)));
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut missing: BTreeSet<[u32; 2]> =
+        given.map(|e| sorted(e.map(|v| sound.vertex(v)))).collect();
+    if missing.is_empty() {
+        return;
+    }
+    let mut ends = vec![false; mesh.points.len()];
+    missing.iter().flatten().for_each(|&v| ends[v as usize] = true);
+    let known =
+        sound.dropped.iter().map(|t| t.map(|v| if exists(v) { sound.vertex(v) } else { v }));
+    for [a, b, c] in sound.triangles.iter().copied().chain(known) {
+        for edge in [[a, b], [b, c], [c, a]] {
+            if edge.iter().all(|&v| exists(v) && ends[v as usize]) {
+                missing.remove(&sorted(edge));
+            }
+        }
+    }
+    for edge in missing {
+        out.add(Id::MarkedEdge, || {
+            let [a, b] = edge.map(|v| show_vertex(mesh, v));
+            let text = format!("the marked edge from {a} to {b} is no edge of a triangle");
+            Draft::new(Id::MarkedEdge, text).vertices(edge)
+        });
+    }
+}
+
 /// Parts connected through edges, and counts.
 pub(super) struct Parts {
     /// The part of each triangle, when there is more than one.
