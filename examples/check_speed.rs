@@ -1,5 +1,6 @@
 //! Times the checker on a generated mesh: `cargo run --release --example check_speed -- 1000 500 1`
-//! checks 1000 x 500 quadrilaterals, a million triangles, on one thread.
+//! checks 1000 x 500 quadrilaterals, a million triangles, on one thread; with a further argument
+//! `torus` a closed surface of as many.
 
 use std::time::Instant;
 use trigrade::check::{CheckOptions, check};
@@ -28,11 +29,31 @@ fn grid(columns: u32, rows: u32) -> MeshData {
     MeshData { points, triangles, ..MeshData::default() }
 }
 
+/// A torus of `columns` x `rows` cells of two triangles.
+fn torus(columns: u32, rows: u32) -> MeshData {
+    let angle = |i: u32, n: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+    let point = |i: u32| {
+        let (u, v) = (angle(i % columns, columns), angle(i / columns, rows));
+        let r = 3.0 + v.cos();
+        [r * u.cos(), r * u.sin(), v.sin()]
+    };
+    let at = |x: u32, y: u32| (y % rows) * columns + x % columns;
+    let mut triangles = Vec::new();
+    for y in 0..rows {
+        for x in 0..columns {
+            let (a, b, c, d) = (at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1));
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    MeshData { points: (0..columns * rows).map(point).collect(), triangles, ..MeshData::default() }
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1).filter_map(|a| a.parse::<u32>().ok());
     let (columns, rows) = (arguments.next().unwrap_or(1000), arguments.next().unwrap_or(500));
     let threads = arguments.next().unwrap_or(1) as usize;
-    let mesh = grid(columns, rows);
+    let in_space = std::env::args().any(|a| a == "torus");
+    let mesh = if in_space { torus(columns, rows) } else { grid(columns, rows) };
     for quality in [false, true] {
         let mut options = CheckOptions::new().threads(threads);
         options.quality = quality;

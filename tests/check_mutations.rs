@@ -235,7 +235,7 @@ proptest! {
     // spec: C7
     #[test]
     fn rubbish_is_judged_without_panic(
-        points in prop::collection::vec([rubbish(), rubbish(), prop_oneof![9 => Just(0.0), 1 => rubbish()]], 0..12),
+        points in prop::collection::vec([rubbish(), rubbish(), rubbish()], 0..12),
         triangles in prop::collection::vec([0u32..14, 0u32..14, 0u32..14], 0..20),
         flat: bool,
         ring in prop::collection::vec(0u32..14, 0..8),
@@ -348,7 +348,7 @@ mod canary {
                 mesh.triangles =
                     (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
             }
-            Fault::Unordered => mesh.triangles.iter_mut().for_each(|t| t.sort_unstable()),
+            Fault::Unordered => mesh.triangles.iter_mut().step_by(2).for_each(|t| t.swap(1, 2)),
             Fault::Snapped => {
                 let cell =
                     |p: &[f64; 3]| [(p[0] * 2.0).round() as i64, (p[1] * 2.0).round() as i64];

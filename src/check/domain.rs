@@ -4,10 +4,11 @@
 //! Nothing is taken over from the mesher's own reading of the domain. Faces are found by an exact
 //! sweep; which of them are inside follows from the parity of loops or from the hole points.
 
-use super::exact::{P2, lexicographic};
+use super::exact::{P2, lexicographic, orient2d};
 use super::points::PointIndex;
 use super::report::DomainPlace;
 use super::sweep::{Conflict, Directed, Faces, Side, sweep};
+use super::tree::{Bounds, Tree};
 use crate::domain::{Domain, Inside, Place};
 use std::collections::BTreeSet;
 
@@ -54,6 +55,7 @@ pub(super) enum Fault {
 }
 
 /// A segment of the domain between canonical points, lexicographically directed.
+#[derive(Clone, Copy)]
 struct Piece {
     ends: [u32; 2],
     /// Number of loop segments along it: crossing an odd one switches inside and outside.
@@ -81,9 +83,19 @@ pub(super) fn derive(domain: &Domain) -> Result<Region, Fault> {
     let table: Vec<P2> = points.iter().copied().chain(seeds).collect();
     let queries: Vec<u32> =
         isolated.iter().copied().chain(points.len() as u32..table.len() as u32).collect();
-    let directed: Vec<Directed> = pieces.iter().map(Piece::directed).collect();
-    let faces = sweep(&table, &directed, &queries)
-        .map_err(|Conflict([a, b])| crossing(&pieces[a as usize], &pieces[b as usize]))?;
+    let sweep_over = |pieces: &[Piece]| {
+        let directed: Vec<Directed> = pieces.iter().map(Piece::directed).collect();
+        sweep(&table, &directed, &queries)
+    };
+    let mut pieces = pieces;
+    let faces = match sweep_over(&pieces) {
+        Ok(faces) => faces,
+        Err(_) => {
+            pieces = split(&points, pieces);
+            sweep_over(&pieces)
+                .map_err(|Conflict([a, b])| crossing(&pieces[a as usize], &pieces[b as usize]))?
+        }
+    };
     let inside = Inner::of(&domain.inside, &faces, isolated.len());
     let region = assemble(points, &pieces, &isolated, (&faces, &inside));
     if region.boundary.is_empty() { Err(Fault::Nothing) } else { Ok(region) }
@@ -137,14 +149,42 @@ fn pieces(domain: &Domain, points: &[P2], canonical: &[u32]) -> Result<Vec<Piece
         *ends = ends.map(|v| canonical[v as usize]);
         ends.sort_unstable_by(|&a, &b| lexicographic(points[a as usize], points[b as usize]));
     }
-    raw.retain(|piece| piece.0[0] != piece.0[1]);
-    raw.sort_by_key(|piece| piece.0);
-    let merge = |group: &[([u32; 2], bool, Source)]| Piece {
-        ends: group[0].0,
-        loops: group.iter().filter(|piece| piece.1).count() as u32,
-        source: group[0].2,
+    let piece = |(ends, in_loop, source)| Piece { ends, loops: u32::from(in_loop), source };
+    Ok(merge(raw.into_iter().filter(|raw| raw.0[0] != raw.0[1]).map(piece).collect()))
+}
+
+/// Makes one piece of those between the same points; the first source stands.
+fn merge(mut pieces: Vec<Piece>) -> Vec<Piece> {
+    pieces.sort_by_key(|piece| piece.ends);
+    let one =
+        |group: &[Piece]| Piece { loops: group.iter().map(|piece| piece.loops).sum(), ..group[0] };
+    pieces.chunk_by(|a, b| a.ends == b.ends).map(one).collect()
+}
+
+/// Splits pieces at the ends of others that lie exactly on them: rings may touch so, and segments
+/// may end so.
+fn split(points: &[P2], pieces: Vec<Piece>) -> Vec<Piece> {
+    let at = |v: u32| points[v as usize];
+    let tree = Tree::new(pieces.iter().map(|p| Bounds::around(p.ends.map(at))));
+    let mut stops: Vec<Vec<u32>> = vec![Vec::new(); pieces.len()];
+    let mut ends: Vec<u32> = pieces.iter().flat_map(|p| p.ends).collect();
+    ends.sort_unstable_by(|&a, &b| lexicographic(at(a), at(b)));
+    ends.dedup();
+    for v in ends {
+        tree.visit(&Bounds { low: at(v), high: at(v) }, |i| {
+            let [a, b] = pieces[i as usize].ends;
+            if a != v && b != v && orient2d(at(a), at(b), at(v)).is_eq() {
+                stops[i as usize].push(v);
+            }
+        });
+    }
+    let cut = |(piece, stops): (Piece, Vec<u32>)| {
+        // Stops come in lexicographic order, as the ends of a piece do.
+        let from = std::iter::once(piece.ends[0]).chain(stops.clone());
+        let to = stops.into_iter().chain([piece.ends[1]]);
+        from.zip(to).map(move |(a, b)| Piece { ends: [a, b], ..piece }).collect::<Vec<_>>()
     };
-    Ok(raw.chunk_by(|a, b| a.0 == b.0).map(merge).collect())
+    merge(pieces.into_iter().zip(stops).flat_map(cut).collect())
 }
 
 fn isolated_points(points: &[P2], canonical: &[u32], pieces: &[Piece]) -> Vec<u32> {

@@ -70,9 +70,9 @@ pub enum Id {
     /// An isolated point of the domain is not a mesh vertex.
     #[serde(rename = "M21")]
     PointLost,
-    /// The mesh does not cover the domain once, for a reason that cannot be told.
+    /// A marked edge of the file is no edge of a triangle.
     #[serde(rename = "M22")]
-    Coverage,
+    MarkedEdge,
     /// An interior edge is not locally Delaunay.
     #[serde(rename = "M23")]
     NotDelaunay,
@@ -97,8 +97,8 @@ pub enum Id {
 }
 
 use Id::{
-    BadReference, BaselineMissed, BoundaryLost, BowTie, Clockwise, ConstraintLost, Coverage,
-    Deviation, DuplicateTriangle, DuplicateVertex, Empty, GateMissed, HangingNode, Inverted,
+    BadReference, BaselineMissed, BoundaryLost, BowTie, Clockwise, ConstraintLost, Deviation,
+    DuplicateTriangle, DuplicateVertex, Empty, GateMissed, HangingNode, Inverted, MarkedEdge,
     MixedOrientation, NonManifoldEdge, NotClosed, NotConstrainedDelaunay, NotDelaunay, NotFinite,
     Outside, Overlap, PointLost, RepeatedVertex, SelfIntersection, SurfaceOrientation, Uncovered,
     UnusedVertex, ZeroArea,
@@ -137,7 +137,7 @@ const TABLE: [(Id, &str, &str, &str); 29] = [
         "every interior constraint is a chain of mesh edges",
     ),
     (PointLost, "M21", "point-lost", "every isolated point of the domain is a mesh vertex"),
-    (Coverage, "M22", "coverage", "the mesh covers the domain exactly once"),
+    (MarkedEdge, "M22", "marked-edge", "every marked edge is an edge of a triangle"),
     (NotDelaunay, "M23", "not-delaunay", "every interior edge is locally Delaunay"),
     (
         NotConstrainedDelaunay,

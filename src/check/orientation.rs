@@ -44,7 +44,12 @@ pub(super) fn orient(
     if !signs.negative.is_empty() {
         // A reversed copy of a triangle is a duplicate, not a fold.
         let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
-        let copies = topology::report_duplicates(sound, &edges, out);
+        let copies = topology::report_duplicates(
+            sound,
+            &edges,
+            |t| signs.negative.binary_search(&t).is_ok(),
+            out,
+        );
         if !copies.is_empty() {
             sound.remove(&copies);
             signs = scan(plane, &sound.triangles);

@@ -92,6 +92,7 @@ fn check_plane(run: &mut Run<'_>, domain: Option<&Domain>) {
         Covered { plane: &plane, sound: &sound, edges: &edges, inverted: &inverted, domain: given };
     let (mut concerned, matched) = coverage::check(&covered, &mut run.out);
     topology::report_crowded_edges(&sound, &edges, &mut run.out);
+    topology::report_marked_edges(&sound, &mut run.out);
     let parts = topology::survey(&sound, &edges);
     if given.is_none() {
         topology::report_bow_ties(&covered, &parts, &concerned, &mut run.out);
@@ -115,7 +116,6 @@ fn check_plane(run: &mut Run<'_>, domain: Option<&Domain>) {
 fn derive_region(run: &mut Run<'_>, domain: Option<&Domain>) -> Option<Region> {
     let Some(domain) = domain else {
         run.skip(&DOMAIN_ONLY, "no domain was given");
-        run.skip(&[Id::Coverage], "no domain was given");
         return None;
     };
     run.skip(&[Id::BowTie], "the domain's boundary decides");
@@ -124,7 +124,6 @@ fn derive_region(run: &mut Run<'_>, domain: Option<&Domain>) -> Option<Region> {
         Err(fault) => {
             let why = format!("the domain is not sound: {fault}");
             run.skip(&DOMAIN_ONLY, &why);
-            run.skip(&[Id::Coverage], &why);
             run.could_not_run.push(why);
             None
         }
@@ -138,7 +137,7 @@ fn build_edges(
     out: &mut Collector<'_>,
 ) -> (Edges, Vec<u32>) {
     let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
-    let copies = topology::report_duplicates(sound, &edges, out);
+    let copies = topology::report_duplicates(sound, &edges, |_| false, out);
     if copies.is_empty() {
         return (edges, oriented.inverted.clone());
     }

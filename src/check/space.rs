@@ -15,7 +15,7 @@ use intersect::Space;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Ids that only a plane mesh can have.
-const PLANE_ONLY: [Id; 15] = [
+const PLANE_ONLY: [Id; 14] = [
     Id::Clockwise,
     Id::MixedOrientation,
     Id::Inverted,
@@ -27,7 +27,6 @@ const PLANE_ONLY: [Id; 15] = [
     Id::Deviation,
     Id::ConstraintLost,
     Id::PointLost,
-    Id::Coverage,
     Id::NotDelaunay,
     Id::NotConstrainedDelaunay,
     Id::NotClosed,
@@ -49,6 +48,7 @@ pub(super) fn check(run: &mut Run<'_>) {
     let space = Space::new(mesh);
     let flat = report_degenerate(&space, &sound, &mut run.out);
     topology::report_crowded_edges(&sound, &edges, &mut run.out);
+    topology::report_marked_edges(&sound, &mut run.out);
     report_orientation(&sound, &edges, &mut run.out);
     report_pinches(&sound, &edges, &mut run.out);
     let parts = topology::survey(&sound, &edges);
@@ -71,7 +71,7 @@ pub(super) fn check(run: &mut Run<'_>) {
 /// The adjacency once duplicate triangles are left out.
 fn build_edges(sound: &mut Sound<'_>, out: &mut Collector<'_>) -> Edges {
     let edges = Edges::of(&sound.triangles, sound.mesh.points.len());
-    let copies = topology::report_duplicates(sound, &edges, out);
+    let copies = topology::report_duplicates(sound, &edges, |_| false, out);
     if copies.is_empty() {
         return edges;
     }

@@ -319,3 +319,100 @@ pub(super) fn segments_conflict(
     }
     orient(c, d, a) != orient(c, d, b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::beside::Beside;
+
+    /// Segments between points of a small lattice; `degree` of them are a closed polygon.
+    fn random_segments(seed: u32, points: u32, count: u32, closed: bool) -> Vec<[u32; 2]> {
+        let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(12_345);
+        let mut next = |bound: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % bound
+        };
+        if closed {
+            let mut ring: Vec<u32> = (0..count).map(|_| next(points)).collect();
+            ring.dedup();
+            let n = ring.len();
+            return (0..n).map(|i| [ring[i], ring[(i + 1) % n]]).filter(|[a, b]| a != b).collect();
+        }
+        (0..count).map(|_| [next(points), next(points)]).filter(|[a, b]| a != b).collect()
+    }
+
+    fn brute_conflict(points: &[P2], segments: &[[u32; 2]]) -> bool {
+        let at = |v: u32| points[v as usize];
+        let sorted =
+            |[a, b]: [u32; 2]| if lexicographic(at(a), at(b)).is_gt() { [b, a] } else { [a, b] };
+        (0..segments.len()).any(|i| {
+            (0..i).any(|j| segments_conflict(at, sorted(segments[i]), sorted(segments[j])))
+        })
+    }
+
+    // spec: C11
+    #[test]
+    fn the_sweep_finds_a_conflict_exactly_when_two_segments_conflict() {
+        let points: Vec<P2> = (0..36).map(|i| [f64::from(i % 6), f64::from(i / 6)]).collect();
+        let mut clean = 0;
+        for seed in 0..6000 {
+            let segments = random_segments(seed, 36, 2 + seed % 7, false);
+            let directed: Vec<Directed> =
+                segments.iter().map(|&[from, to]| Directed { from, to, weight: 1 }).collect();
+            let found = sweep(&points, &directed, &[]).is_err();
+            assert_eq!(found, brute_conflict(&points, &segments), "{segments:?}");
+            clean += u32::from(!found);
+        }
+        assert!(clean > 500, "{clean} sets without conflict");
+    }
+
+    // spec: C11
+    #[test]
+    fn windings_and_faces_are_those_of_rays() {
+        let points: Vec<P2> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5)]).collect();
+        let mut compared = 0;
+        for seed in 0..20_000 {
+            let segments = random_segments(seed, 25, 3 + seed % 5, true);
+            if segments.len() < 3 || brute_conflict(&points, &segments) {
+                continue;
+            }
+            let directed: Vec<Directed> =
+                segments.iter().map(|&[from, to]| Directed { from, to, weight: 1 }).collect();
+            let faces = sweep(&points, &directed, &[]).expect("no conflict");
+            for (i, &[from, to]) in segments.iter().enumerate() {
+                for (left, side) in [(true, faces.left[i]), (false, faces.right[i])] {
+                    let q = Beside { u: points[from as usize], v: points[to as usize], left };
+                    let at = |v: u32| points[v as usize];
+                    let winding: i32 = segments.iter().map(|&[s, t]| q.winding(at(s), at(t))).sum();
+                    assert_eq!(side.winding, winding, "{segments:?}");
+                    assert!(side.face != 0 || winding == 0, "{segments:?}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 1000, "{compared} sides compared");
+    }
+
+    #[test]
+    fn queries_say_which_face_they_lie_in() {
+        let points =
+            [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 1.0], [9.0, 1.0], [2.0, 0.0]];
+        let ring = [[0, 1], [1, 2], [2, 3], [3, 0]];
+        let directed = ring.map(|[from, to]| Directed { from, to, weight: 1 });
+        let faces = sweep(&points, &directed, &[4, 5, 6]).expect("no conflict");
+        assert_eq!(faces.queries[0].map(|s| s.winding), Some(1));
+        assert_eq!(faces.queries[1].map(|s| (s.winding, s.face)), Some((0, 0)));
+        assert_eq!(faces.queries[2], None);
+    }
+
+    #[test]
+    fn a_dangling_segment_separates_nothing() {
+        let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [2.0, 2.0]];
+        let all = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4]];
+        let directed = all.map(|[from, to]| Directed { from, to, weight: 0 });
+        let faces = sweep(&points, &directed, &[]).expect("no conflict");
+        assert_eq!(faces.left[4].face, faces.right[4].face);
+        assert_ne!(faces.left[4].face, 0);
+        assert_eq!(faces.left[0].face, faces.left[4].face);
+    }
+}

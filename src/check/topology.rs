@@ -9,13 +9,15 @@ use super::report::{Collector, Draft, Statistics, show_triangle, show_vertex};
 use super::structure::Sound;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Reports M7; gives the later copies, sorted.
+/// Reports M7; gives the copies to leave out, sorted. Of each set one stays: the first that is not
+/// `reversed`, if there is one.
 ///
 /// A triangle and its copy share three edges, and each of them is irregular: two run the same way,
 /// or, if one copy is reversed and has no other neighbours, all three are shared in pairs.
 pub(super) fn report_duplicates(
     sound: &Sound<'_>,
     edges: &Edges,
+    reversed: impl Fn(u32) -> bool,
     out: &mut Collector<'_>,
 ) -> Vec<u32> {
     let crowded = edges.irregular.iter().flat_map(super::edges::Irregular::triangles);
@@ -28,18 +30,22 @@ pub(super) fn report_duplicates(
     candidates.extend((0..sound.triangles.len() as u32).filter(glued));
     candidates.sort_unstable();
     candidates.dedup();
-    let mut seen: BTreeMap<[u32; 3], u32> = BTreeMap::new();
-    let mut copies = Vec::new();
+    let mut sets: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
     for t in candidates {
         let mut corners = sound.triangles[t as usize];
         corners.sort_unstable();
-        let first = *seen.entry(corners).or_insert(t);
-        if first != t {
-            copies.push(t);
-            out.add(Id::DuplicateTriangle, || duplicate(sound, [first, t]));
-        }
+        sets.entry(corners).or_default().push(t);
     }
-    copies
+    let mut copies = Vec::new();
+    for set in sets.values().filter(|set| set.len() > 1) {
+        let kept = set.iter().copied().find(|&t| !reversed(t)).unwrap_or(set[0]);
+        copies.extend(set.iter().filter(|&&t| t != kept).map(|&t| (t, kept)));
+    }
+    copies.sort_unstable();
+    for &(copy, kept) in &copies {
+        out.add(Id::DuplicateTriangle, || duplicate(sound, [kept, copy]));
+    }
+    copies.into_iter().map(|pair| pair.0).collect()
 }
 
 fn duplicate(sound: &Sound<'_>, pair: [u32; 2]) -> Draft {
@@ -69,6 +75,37 @@ pub(super) fn report_crowded_edges(sound: &Sound<'_>, edges: &Edges, out: &mut C
                 .triangles(triangles.take(16))
                 .vertices(edge.vertices)
                 .measured("triangles", count as f64)
+        });
+    }
+}
+
+/// Reports M22: marked edges of the file that no triangle has.
+pub(super) fn report_marked_edges(sound: &Sound<'_>, out: &mut Collector<'_>) {
+    let mesh = sound.mesh;
+    let exists = |v: u32| (v as usize) < mesh.points.len();
+    let given = mesh.edges.iter().map(|e| e.vertices).filter(|e| e.iter().all(|&v| exists(v)));
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut missing: BTreeSet<[u32; 2]> =
+        given.map(|e| sorted(e.map(|v| sound.vertex(v)))).collect();
+    if missing.is_empty() {
+        return;
+    }
+    let mut ends = vec![false; mesh.points.len()];
+    missing.iter().flatten().for_each(|&v| ends[v as usize] = true);
+    let known =
+        sound.dropped.iter().map(|t| t.map(|v| if exists(v) { sound.vertex(v) } else { v }));
+    for [a, b, c] in sound.triangles.iter().copied().chain(known) {
+        for edge in [[a, b], [b, c], [c, a]] {
+            if edge.iter().all(|&v| exists(v) && ends[v as usize]) {
+                missing.remove(&sorted(edge));
+            }
+        }
+    }
+    for edge in missing {
+        out.add(Id::MarkedEdge, || {
+            let [a, b] = edge.map(|v| show_vertex(mesh, v));
+            let text = format!("the marked edge from {a} to {b} is no edge of a triangle");
+            Draft::new(Id::MarkedEdge, text).vertices(edge)
         });
     }
 }

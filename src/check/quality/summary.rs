@@ -339,13 +339,13 @@ mod tests {
         sorted.sort_by(f32::total_cmp);
         let wanted = [1, 50, 99].map(|p| Some(f64::from(sorted[(count * p).div_ceil(100) - 1])));
         let column = Column { columns: &columns, column: 2, count };
-        let spread = column.spread(&[-500.0, 0.0, 1024.0], 1.0);
+        let spread = column.spread(&[0.0, 512.0, 1024.0], 1.0);
         assert_eq!(spread.percentiles, wanted);
         let below = |b: f32| sorted.partition_point(|&v| v < b) as u64;
-        let cuts = [below(-500.0), below(0.0), below(1024.0), count as u64];
+        let cuts = [below(0.0), below(512.0), below(1024.0), count as u64];
         let counts = [cuts[0], cuts[1] - cuts[0], cuts[2] - cuts[1], cuts[3] - cuts[2]];
         assert_eq!(spread.counts, counts);
-        assert_eq!(column.scaled_histogram(&[-500.0, 0.0, 1024.0], 1.0), counts);
+        assert_eq!(column.scaled_histogram(&[0.0, 512.0, 1024.0], 1.0), counts);
     }
 
     #[test]
