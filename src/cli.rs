@@ -14,6 +14,7 @@ pub mod mesh;
 pub mod mesh_file;
 pub mod outcome;
 pub mod output;
+pub mod torture;
 pub mod verdict;
 pub mod watch;
 
@@ -71,6 +72,7 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),
+        Verb::Torture(torture) => return torture::torture(torture, console),
         Verb::Explain(explain) => explain::run(explain.id.as_deref(), console)?,
         Verb::Completions(completions) => print_completions(completions.shell, console),
         Verb::Man => print_manual(console)?,

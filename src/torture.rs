@@ -14,4 +14,8 @@ pub mod export;
 pub mod generate;
 pub mod judge;
 pub mod prng;
+#[cfg(feature = "cli")]
+pub mod report;
+#[cfg(feature = "cli")]
+pub mod run;
 pub mod shrink;

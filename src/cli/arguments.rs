@@ -7,6 +7,7 @@ use crate::improve::ImproveOptions;
 use crate::{front, mesher, size};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
+use std::time::Duration;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -66,6 +67,8 @@ pub enum Verb {
     Convert(ConvertArguments),
     /// Draw a mesh as SVG or PNG.
     Plot(PlotArguments),
+    /// Torture any mesher with adversarial boundaries, and shrink what it gets wrong.
+    Torture(Box<TortureArguments>),
     /// Print the completion script of a shell.
     Completions(CompletionsArguments),
     /// Print the manual page (roff).
@@ -383,6 +386,76 @@ pub struct PlotArguments {
     pub width: u32,
 }
 
+/// `trigrade torture`
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trigrade torture --cases 1000
+  trigrade torture --preset gmsh --plain --cases 1000 --out gmsh-torture
+  trigrade torture --mesher 'mymesher {in} -o {out}' --form geojson --answer vtu
+  trigrade torture --preset gmsh --replay gmsh-torture
+Exit codes: 0 no failure, 1 failures, 2 the mesher could not be run at all.")]
+pub struct TortureArguments {
+    /// The mesher's command line for the shell: {in} is the boundary, {out} the mesh, {stem} the
+    /// boundary without its extension.
+    #[arg(long, value_name = "COMMAND", conflicts_with = "preset")]
+    pub mesher: Option<String>,
+    /// A mesher known by name: self, gmsh, triangle, netgen, mmg2d, spade.
+    #[arg(long, value_name = "NAME", default_value = "self")]
+    pub preset: String,
+    /// What the mesher reads: json, poly, geo, in2d, svg, geojson, wkt, mesh; without it the
+    /// preset's own, and poly for --mesher.
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+    /// What the mesher writes: an extension for {out}, or a path such as {stem}.1.ele.
+    #[arg(long, value_name = "FORM")]
+    pub answer: Option<String>,
+    /// Everything follows from it: the same seed gives the same boundaries everywhere.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+    /// How many boundaries.
+    #[arg(long, value_name = "COUNT", default_value_t = 1000)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    pub cases: u64,
+    /// Only this family; repeatable.
+    #[arg(long, value_name = "FAMILY")]
+    pub family: Vec<String>,
+    /// No family goes far above this number of vertices.
+    #[arg(long, value_name = "COUNT", default_value_t = 3000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(3..=100_000))]
+    pub max_size: u32,
+    /// Keep coordinates at integers of moderate size, for meshers that work with tolerances.
+    #[arg(long)]
+    pub plain: bool,
+    /// Time for each boundary, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = parse_duration)]
+    pub timeout: Duration,
+    /// Memory for each boundary: bytes, or with a suffix such as 500M or 4G (`ulimit -v`).
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_size)]
+    pub memory: u64,
+    /// No triangle's R/(2r) may be above this.
+    #[arg(long, value_name = "RATIO", value_parser = parse_clamp)]
+    pub max_aspect: Option<f64>,
+    /// Findings of this id do not count; repeatable.
+    #[arg(long, value_name = "ID")]
+    pub allow: Vec<Id>,
+    /// How many failures are shrunk, one of each kind first.
+    #[arg(long, value_name = "COUNT", default_value_t = 20)]
+    pub shrink: u32,
+    /// How often the mesher is asked at most to shrink one failure.
+    #[arg(long, value_name = "COUNT", default_value_t = 400)]
+    pub trials: u32,
+    /// Folder for the report, the reproducers and the log from which a run is taken up again.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Run the reproducers in this folder again, in place of new boundaries.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub replay: Option<PathBuf>,
+    /// List the families and the presets.
+    #[arg(long)]
+    pub list: bool,
+}
+
 /// `trigrade completions`
 #[derive(Clone, Debug, Args)]
 pub struct CompletionsArguments {
@@ -447,6 +520,33 @@ fn parse_positive(text: &str) -> Result<f64, String> {
     if value > 0.0 { Ok(value) } else { Err("the number must be above 0".into()) }
 }
 
+fn parse_duration(text: &str) -> Result<Duration, String> {
+    let seconds = parse_positive(text)?;
+    if seconds <= 86_400.0 {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("a case may take a day at most".into())
+    }
+}
+
+/// Bytes, with a suffix K, M or G for powers of 1024.
+fn parse_size(text: &str) -> Result<u64, String> {
+    let wrong = || format!("`{text}` is no size such as 500M or 4G");
+    let split = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    let (digits, suffix) = text.split_at(split);
+    let shift = match suffix {
+        "" => 0,
+        "K" => 10,
+        "M" => 20,
+        "G" => 30,
+        _ => return Err(wrong()),
+    };
+    let count: u64 = digits.parse().map_err(|_| wrong())?;
+    let bytes = count.checked_mul(1 << shift).ok_or_else(wrong)?;
+    // Below that no program starts, and every case would look like a crash.
+    if bytes >= 16 << 20 { Ok(bytes) } else { Err("a mesher needs at least 16M".into()) }
+}
+
 fn parse_clamp(text: &str) -> Result<f64, String> {
     let value = parse_finite(text)?;
     if value >= 1.0 { Ok(value) } else { Err("the factor must be at least 1".into()) }
@@ -509,6 +609,19 @@ mod tests {
         }
         assert!(parse_clamp("0.5").is_err());
         assert_eq!(parse_clamp("1"), Ok(1.0));
+    }
+
+    #[test]
+    fn sizes_and_times() {
+        assert_eq!(parse_size("500M"), Ok(500 << 20));
+        assert_eq!(parse_size("4G"), Ok(4 << 30));
+        for wrong in ["", "G", "-1", "4T", "1", "99999999999999999999", "99999999999G", "1.5G"] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_duration("1.5"), Ok(Duration::from_millis(1500)));
+        for wrong in ["0", "-1", "1e300", "soon"] {
+            assert!(parse_duration(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -201,7 +201,8 @@ fn judge_mesh(domain: &Domain, mesh: &MeshData, demands: &Demands) -> Judgement 
             .quality
             .as_ref()
             .and_then(|quality| quality.summary(Metric::RadiusRatio))
-            .and_then(|summary| summary.max),
+            .and_then(|summary| summary.max)
+            .filter(|ratio| ratio.is_finite()),
     }
 }
 
@@ -212,6 +213,7 @@ fn class_of(report: &Report, findings: &[Id]) -> Class {
     };
     let is_gate = |id: &Id| matches!(id, Id::GateMissed | Id::BaselineMissed);
     match report.verdict {
+        Verdict::CouldNotRun if report.statistics.triangles == 0 => Class::WrongMesh,
         Verdict::CouldNotRun => Class::Unreadable,
         Verdict::Passed => Class::Passed,
         Verdict::Failed if findings.iter().all(is_gate) => Class::BelowGate,

@@ -249,7 +249,11 @@ fn reproduce_one(plan: &Plan, record: &Record) -> Result<Reproducer, RunError> {
             Err(error) => {
                 trouble.get_or_insert(error);
                 // Like no failure, so that the search ends where it is.
-                Judgement { class: Class::NotAsked, findings: Vec::new(), ..record.judgement.clone() }
+                Judgement {
+                    class: Class::NotAsked,
+                    findings: Vec::new(),
+                    ..record.judgement.clone()
+                }
             }
         }
     };

@@ -49,15 +49,15 @@ fn list(numbers: impl Iterator<Item = usize>) -> String {
 }
 
 fn sizes(domain: &Domain) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0u32); domain.points.len()];
+    let mut means = vec![(0.0, 0u32); domain.points.len()];
     for [a, b] in domain.edges() {
-        let length = domain.points[a as usize].distance(domain.points[b as usize]);
+        let [p, q] = [a, b].map(|v| domain.points[v as usize]);
+        let length = libm::hypot(q.x - p.x, q.y - p.y);
         for v in [a, b] {
-            let sum = &mut sums[v as usize];
-            *sum = (sum.0 + length, sum.1 + 1);
+            let (mean, count) = &mut means[v as usize];
+            *count += 1;
+            *mean += (length - *mean) / f64::from(*count);
         }
     }
-    sums.into_iter()
-        .map(|(sum, count)| if count == 0 { 1.0 } else { sum / f64::from(count) })
-        .collect()
+    means.into_iter().map(|(mean, _)| if mean > 0.0 { mean.min(f64::MAX) } else { 1.0 }).collect()
 }

@@ -77,7 +77,7 @@ fn touching(prng: &mut Prng, size: usize) -> Draft {
 }
 
 fn many_holes(prng: &mut Prng, size: usize) -> Draft {
-    let k = 2 + (size as f64).sqrt().min(50.0) as i64;
+    let k = 2 + (size as i64 / 2).min(50);
     let pitch = 8 << prng.below(20);
     let mut draft = Draft::square(pitch * k);
     let shape = prng.below(4);

@@ -3,7 +3,7 @@
 use super::Family;
 use super::draft::{Draft, rectangle};
 use super::gaps::primitive;
-use super::lattice::{Site, nearest_left};
+use super::lattice::{Site, nearest_left, turn};
 use crate::domain::LoopRole;
 use crate::torture::prng::Prng;
 
@@ -76,8 +76,10 @@ fn barely(prng: &mut Prng, _size: usize) -> Draft {
     let outer = vec![[0, 0], d, [-d[1], d[0]]];
     let centre = [(d[0] - d[1]) / 3, (d[0] + d[1]) / 3];
     let mut draft = Draft::ring(outer);
-    let hole = vec![[d[0] - u, d[1] - v], centre, [centre[0] - 1, centre[1]]];
-    draft.add(hole, LoopRole::Any);
+    let tip = [d[0] - u, d[1] - v];
+    let beside = [[centre[0] - 1, centre[1]], [centre[0], centre[1] + 1]];
+    let third = beside.into_iter().find(|&p| turn(tip, centre, p).is_ne());
+    draft.add(vec![tip, centre, third.unwrap_or(beside[0])], LoopRole::Any);
     draft
 }
 

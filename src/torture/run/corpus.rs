@@ -80,7 +80,11 @@ struct CaseFile {
 ///
 /// # Errors
 /// [`CorpusError::Io`].
-pub fn write(out: &Path, mut reproducer: Reproducer, plan: &Plan) -> Result<Reproducer, CorpusError> {
+pub fn write(
+    out: &Path,
+    mut reproducer: Reproducer,
+    plan: &Plan,
+) -> Result<Reproducer, CorpusError> {
     let class = reproducer.judgement.class.name();
     let name = PathBuf::from("failures").join(format!("{:06}-{class}", reproducer.index));
     let folder = out.join(&name);
@@ -159,8 +163,10 @@ fn read_case(folder: &Path, index: u64) -> Result<Case, CorpusError> {
         return Err(malformed("the boundary must lie in the same folder".into()));
     }
     let boundary = folder.join(&file.boundary);
-    let domain = domain_json::read(&read(&boundary)?)
-        .map_err(|error| CorpusError::Malformed { path: boundary.clone(), why: error.to_string() })?;
+    let domain = domain_json::read(&read(&boundary)?).map_err(|error| CorpusError::Malformed {
+        path: boundary.clone(),
+        why: error.to_string(),
+    })?;
     let of_family = families().find(|family| family.name == file.family);
     let claims = families().map(|family| family.claim);
     let claim = claims.into_iter().find(|&claim| claim_word(claim) == file.claim);

@@ -37,7 +37,9 @@ impl State {
     pub fn open(path: &Path, plan: &Value) -> Result<(Self, Vec<Record>), StateError> {
         let told = |source| StateError::Io { path: path.to_owned(), source };
         let mut lines = match File::open(path) {
-            Ok(file) => BufReader::new(file).lines().collect::<io::Result<Vec<_>>>().map_err(told)?,
+            Ok(file) => {
+                BufReader::new(file).lines().collect::<io::Result<Vec<_>>>().map_err(told)?
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
             Err(error) => return Err(told(error)),
         };
@@ -48,8 +50,7 @@ impl State {
         // The last line of a run that was killed may be cut short: that case is run again.
         let records: Vec<Record> =
             lines.drain(..).skip(1).filter_map(|line| serde_json::from_str(&line).ok()).collect();
-        let mut file =
-            OpenOptions::new().create(true).append(true).open(path).map_err(told)?;
+        let mut file = OpenOptions::new().create(true).append(true).open(path).map_err(told)?;
         match is_new {
             true => writeln!(file, "{plan}").map_err(told)?,
             false => writeln!(file).map_err(told)?,

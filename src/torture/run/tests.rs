@@ -40,8 +40,7 @@ fn a_mesher_that_refuses_everything_fails_on_the_valid_only() {
     let run = unwatched(&plan("exit 1", None));
     assert_eq!(run.records.len(), 45);
     for record in &run.records {
-        let expected =
-            if record.claim == "valid" { Class::RefusedValid } else { Class::Passed };
+        let expected = if record.claim == "valid" { Class::RefusedValid } else { Class::Passed };
         assert_eq!(record.judgement.class, expected, "{record:?}");
     }
     assert_eq!(run.reproducers.len(), 2);
@@ -97,9 +96,12 @@ fn a_corpus_that_lies_is_refused() {
     unwatched(&plan("exit 1", Some(folder.path())));
     let case = read_corpus(folder.path()).expect("written").folders[0].join("case.json");
     let good = std::fs::read_to_string(&case).expect("readable");
-    for (old, new) in
-        [("\"valid\"", "\"D8\""), ("\"valid\"", "\"fine\""), ("shrunk.json", "../shrunk.json"), ("{", "")]
-    {
+    for (old, new) in [
+        ("\"valid\"", "\"D8\""),
+        ("\"valid\"", "\"fine\""),
+        ("shrunk.json", "../shrunk.json"),
+        ("{", ""),
+    ] {
         std::fs::write(&case, good.replacen(old, new, 1)).expect("written");
         assert!(read_corpus(folder.path()).is_err(), "{old} -> {new}");
     }
