@@ -13,6 +13,7 @@
 
 mod along;
 mod beside;
+pub mod certificate;
 mod chain;
 mod conform;
 mod constraint;

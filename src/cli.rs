@@ -48,18 +48,18 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let cleanup = Cleanup::default();
     cleanup.on_interrupt()?;
     set_threads(global.threads)?;
-    let reports = Reports::prepare(global, &cleanup)?;
+    let reports = Reports::prepare(global, has_verdict(&arguments.verb), &cleanup)?;
     match run_verb(&arguments.verb, &console, &cleanup) {
         Ok(outcome) => {
             if !outcome.text.is_empty() {
                 console.say(&outcome.text);
             }
-            reports.write(&outcome.text, &outcome.json)?;
+            reports.write(&outcome.text, &outcome.json, outcome.checked.as_deref())?;
             Ok(outcome.exit)
         }
         Err(failure) => {
             console.complain(&failure);
-            reports.write(&outcome::failure_text(&failure), &outcome::failure_json(&failure))?;
+            reports.write_failure(&failure, &subject(&arguments.verb))?;
             Ok(failure.exit)
         }
     }
@@ -68,7 +68,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
 fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome, Failure> {
     match verb {
         Verb::Mesh(mesh) => return mesh::run(mesh, console, cleanup),
-        Verb::Check(check) => return check::run(check),
+        Verb::Check(check) => return check::run(check, cleanup),
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),
@@ -77,7 +77,21 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Completions(completions) => print_completions(completions.shell, console),
         Verb::Man => print_manual(console)?,
     }
-    Ok(Outcome { exit: EXIT_HOLDS, text: String::new(), json: Value::Null })
+    Ok(Outcome { exit: EXIT_HOLDS, text: String::new(), json: Value::Null, checked: None })
+}
+
+/// Whether a verb ends in a verdict on a mesh, which reports of every form can tell.
+fn has_verdict(verb: &Verb) -> bool {
+    matches!(verb, Verb::Mesh(_) | Verb::Check(_))
+}
+
+/// The file that a report of a failed run is about.
+fn subject(verb: &Verb) -> String {
+    match verb {
+        Verb::Mesh(mesh) => mesh.domain.display().to_string(),
+        Verb::Check(check) => check.mesh.display().to_string(),
+        _ => String::new(),
+    }
 }
 
 /// The outputs of a verb that may go to standard output.

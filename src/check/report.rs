@@ -201,6 +201,23 @@ pub struct Report {
 }
 
 impl Report {
+    /// The report of a check that could not begin: nothing was checked.
+    #[must_use]
+    pub fn not_run(why: &str) -> Self {
+        Self {
+            schema: SCHEMA.to_owned(),
+            verdict: Verdict::CouldNotRun,
+            could_not_run: vec![why.to_owned()],
+            findings: Vec::new(),
+            counts: Vec::new(),
+            checked: Vec::new(),
+            not_checked: Vec::new(),
+            statistics: Statistics::default(),
+            quality: None,
+            gates: Vec::new(),
+        }
+    }
+
     /// Whether everything asked for was checked and holds.
     #[must_use]
     pub fn passed(&self) -> bool {

@@ -1,6 +1,7 @@
 //! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
 //! page, the completions and the tests.
 
+use crate::check::report::Form;
 use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::draw::View;
 use crate::improve::ImproveOptions;
@@ -41,7 +42,8 @@ pub struct Global {
     /// Print the report as JSON on standard output, and nothing else there.
     #[arg(long, global = true)]
     pub json: bool,
-    /// Write a report: KIND is `text` or `json`, FILE may be `-`; may be given several times.
+    /// Write a report, repeatable: KIND is text, json, junit, sarif, github, github-summary, gitlab
+    /// or tap, FILE may be `-`.
     #[arg(long, global = true, value_name = "KIND=FILE", value_parser = parse_report)]
     pub report: Vec<ReportTarget>,
     /// Worker threads; the answer is the same for any number.
@@ -65,7 +67,7 @@ pub enum Verb {
     Explain(ExplainArguments),
     /// Convert a mesh between formats, bit for bit where the formats allow it.
     Convert(ConvertArguments),
-    /// Draw a mesh as SVG or PNG.
+    /// Draw a mesh as SVG or PNG, or as an HTML viewer.
     Plot(PlotArguments),
     /// Torture any mesher with adversarial boundaries, and shrink what it gets wrong.
     Torture(Box<TortureArguments>),
@@ -109,6 +111,9 @@ pub struct MeshArguments {
     /// Print the time of each stage.
     #[arg(long)]
     pub timings: bool,
+    /// Write what was checked, on which bytes, and the answer.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "no_check")]
+    pub certificate: Option<PathBuf>,
 }
 
 /// How a domain file is read.
@@ -258,6 +263,7 @@ pub enum Rules {
 Examples:
   trigrade check wing.msh --domain wing.poly
   trigrade check wing.off --max-aspect 3 --gate 'min_angle >= 25 @ 99%' --json
+  trigrade check wing.msh --gates gates.toml --report junit=out.xml --picture findings.html
   trigrade check - --from off < wing.off")]
 pub struct CheckArguments {
     /// The mesh; `-` is standard input.
@@ -278,6 +284,18 @@ pub struct CheckArguments {
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,
+    /// Write the quality of this mesh, for a later --baseline.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub save_baseline: Option<PathBuf>,
+    /// Draw the mesh with its findings; .svg, .png or .html (a viewer); repeatable.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub picture: Vec<PathBuf>,
+    /// Write what was checked, on which bytes, and the answer.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub certificate: Option<PathBuf>,
+    /// Check again what a certificate says, on the files given.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub verify_certificate: Option<PathBuf>,
 }
 
 /// What is demanded of a mesh beyond conformity.
@@ -302,9 +320,21 @@ pub struct Demands {
     /// Every interior edge that is no constraint must be locally Delaunay.
     #[arg(long)]
     pub constrained_delaunay: bool,
+    /// A surface mesh must have no boundary.
+    #[arg(long)]
+    pub closed: bool,
+    /// How far a node of a subdivided segment may be from it, in units in the last place.
+    #[arg(long, value_name = "ULPS", value_parser = parse_positive)]
+    pub deviation_ulps: Option<f64>,
     /// Findings of this id are reported but do not fail; repeatable.
     #[arg(long, value_name = "ID")]
     pub allow: Vec<Id>,
+    /// A TOML file of gates and allowed ids: `gates = ["radius_ratio <= 3 @ 99%"]`, `allow = ["M6"]`.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub gates: Option<PathBuf>,
+    /// Quality may not be worse than in this file, which --save-baseline wrote.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub baseline: Option<PathBuf>,
 }
 
 impl Demands {
@@ -319,7 +349,11 @@ impl Demands {
         gates.extend(self.gate.iter().cloned());
         let mut options = CheckOptions::new()
             .delaunay(self.delaunay)
-            .constrained_delaunay(self.constrained_delaunay);
+            .constrained_delaunay(self.constrained_delaunay)
+            .closed(self.closed);
+        if let Some(ulps) = self.deviation_ulps {
+            options.deviation_ulps = ulps;
+        }
         options.gates = gates;
         options.allow = self.allow.iter().copied().collect();
         options
@@ -368,7 +402,7 @@ pub struct PlotArguments {
     /// Form of the mesh, whatever its extension (needed for `-`).
     #[arg(long, value_name = "FORM")]
     pub from: Option<String>,
-    /// The picture: .svg or .png, `-` is standard output; repeatable.
+    /// The picture: .svg, .png or .html (a viewer), `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,
     /// Form of the pictures, whatever their extension (needed for `-o -`).
@@ -473,20 +507,11 @@ pub struct Farfield {
     pub points: u32,
 }
 
-/// Kinds of reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReportKind {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
-}
-
 /// A report that is wanted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportTarget {
-    /// What kind.
-    pub kind: ReportKind,
+    /// What form.
+    pub form: Form,
     /// Where to; `-` is standard output.
     pub path: PathBuf,
 }
@@ -494,17 +519,11 @@ pub struct ReportTarget {
 fn parse_report(text: &str) -> Result<ReportTarget, String> {
     let (kind, path) =
         text.split_once('=').ok_or("write it as KIND=FILE, e.g. json=report.json")?;
-    let kind = match kind {
-        "text" => ReportKind::Text,
-        "json" => ReportKind::Json,
-        other => {
-            return Err(format!("no report kind is called `{other}`; there are text and json"));
-        }
-    };
+    let form = kind.parse::<Form>().map_err(|error| error.to_string())?;
     if path.is_empty() {
         return Err("the file name is missing after `=`".into());
     }
-    Ok(ReportTarget { kind, path: path.into() })
+    Ok(ReportTarget { form, path: path.into() })
 }
 
 fn parse_finite(text: &str) -> Result<f64, String> {
@@ -596,7 +615,7 @@ mod tests {
     #[test]
     fn reports_are_kind_and_file() {
         let target = parse_report("json=a=b.json").expect("only the first `=` separates");
-        assert_eq!(target, ReportTarget { kind: ReportKind::Json, path: "a=b.json".into() });
+        assert_eq!(target, ReportTarget { form: Form::Json, path: "a=b.json".into() });
         for wrong in ["json", "json=", "yaml=a", "=a"] {
             assert!(parse_report(wrong).is_err(), "{wrong}");
         }

@@ -2,29 +2,192 @@
 
 use super::arguments::{CheckArguments, DomainReading};
 use super::domain_file::load_domain;
-use super::failure::Failure;
-use super::mesh_file::load_mesh;
-use super::outcome::Outcome;
+use super::failure::{Diagnostic, EXIT_FINDINGS, Failure};
+use super::forms::{OutputFile, output_files};
+use super::input::{Input, load};
+use super::mesh_file::{Drawing, load_mesh, write};
+use super::outcome::{Checked, Outcome};
+use super::output::{Cleanup, Outputs};
 use super::verdict;
-use crate::check::check;
+use crate::check::certificate::{Certificate, FileHash};
+use crate::check::{Baseline, CheckOptions, GateError, GateFile, Report, check};
+use crate::domain::Domain;
+use crate::draw;
+use crate::format::MeshView;
+use crate::mesh::MeshData;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 /// Runs the verb.
 ///
 /// # Errors
-/// Exit code 2: a file cannot be read or is malformed. An invalid domain is for `check` itself to
-/// judge: it needs no sound domain to see that a mesh does not match it.
-pub fn run(arguments: &CheckArguments) -> Result<Outcome, Failure> {
-    let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
-    let reading =
-        DomainReading { from: arguments.domain_from.clone(), farfield: arguments.farfield };
-    let domain = match &arguments.domain {
-        Some(path) => Some(load_domain(path, &reading)?.1),
-        None => None,
+/// Exit code 2: a file cannot be read or is malformed, or another cannot be written. An invalid
+/// domain is for `check` itself to judge: it needs no sound domain to see that a mesh does not match
+/// it.
+pub fn run(arguments: &CheckArguments, cleanup: &Cleanup) -> Result<Outcome, Failure> {
+    let certified = arguments.verify_certificate.as_deref().map(load_certificate).transpose()?;
+    let options = match &certified {
+        Some(certificate) => certificate.options(),
+        None => options(arguments)?,
     };
-    let report = check(&mesh, domain.as_ref(), &arguments.demands.options());
-    Ok(Outcome {
+    let side = SideFiles::prepare(arguments, cleanup)?;
+    let files = Files::load(arguments)?;
+    let report = check(&files.mesh, files.domain(), &options);
+    let fresh = files.certificate(&report, &options);
+    let picture = Drawing {
+        highlights: draw::highlights(&report),
+        ..Drawing::of(&files.mesh, files.input.name.clone())
+    };
+    side.write(&report, &fresh, &picture)?;
+    let mut outcome = Outcome {
         exit: report.exit_code(),
-        text: verdict::text(&report, &input.name),
+        text: verdict::text(&report, &files.input.name),
         json: verdict::json(&report),
+        checked: Some(Box::new(files.checked(report))),
+    };
+    if let Some(certified) = certified {
+        confirm(&certified, &fresh, &mut outcome);
+    }
+    Ok(outcome)
+}
+
+/// Says whether the certificate holds; one that does not is a finding.
+fn confirm(certified: &Certificate, fresh: &Certificate, outcome: &mut Outcome) {
+    let line = match certified.confirmed_by(fresh) {
+        Ok(()) => {
+            "confirmed: the files are those certified, and the check says the same".to_owned()
+        }
+        Err(error) => {
+            outcome.exit = outcome.exit.max(EXIT_FINDINGS);
+            format!("NOT CONFIRMED: {error}")
+        }
+    };
+    outcome.text.push_str(&format!("\n  certificate {line}"));
+    outcome.json["certificate"] = line.into();
+}
+
+/// The demands of the command line and of the files it names.
+fn options(arguments: &CheckArguments) -> Result<CheckOptions, Failure> {
+    let mut options = arguments.demands.options();
+    if let Some(path) = &arguments.demands.gates {
+        let file = GateFile::parse(&text_of(path)?).map_err(|e| wrong(path, &e))?;
+        options.gates.extend(file.gates);
+        options.allow.extend(file.allow);
+    }
+    if let Some(path) = &arguments.demands.baseline {
+        options.baseline = Some(Baseline::parse(&text_of(path)?).map_err(|e| wrong(path, &e))?);
+    }
+    Ok(options)
+}
+
+fn wrong(path: &Path, error: &GateError) -> Failure {
+    Failure::cannot_run(Diagnostic::new(error.to_string()).at(path.display()))
+}
+
+fn text_of(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(load(path)?.bytes).map_err(|_| {
+        Failure::cannot_run(Diagnostic::new("this is no UTF-8 text").at(path.display()))
+    })
+}
+
+fn load_certificate(path: &Path) -> Result<Certificate, Failure> {
+    Certificate::parse(&text_of(path)?)
+        .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string()).at(path.display())))
+}
+
+/// What is checked, and the bytes it was read from.
+struct Files {
+    input: Input,
+    mesh: MeshData,
+    domain: Option<(Input, Domain)>,
+}
+
+impl Files {
+    fn load(arguments: &CheckArguments) -> Result<Self, Failure> {
+        let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
+        let reading =
+            DomainReading { from: arguments.domain_from.clone(), farfield: arguments.farfield };
+        let domain = arguments.domain.as_ref().map(|path| load_domain(path, &reading));
+        Ok(Self { input, mesh, domain: domain.transpose()? })
+    }
+
+    fn domain(&self) -> Option<&Domain> {
+        self.domain.as_ref().map(|(_, domain)| domain)
+    }
+
+    fn certificate(&self, report: &Report, options: &CheckOptions) -> Certificate {
+        let hash = |input: &Input| FileHash::of(&input.name, &[&input.bytes]);
+        let domain = self.domain.as_ref().map(|(input, _)| hash(input));
+        Certificate::new(report, options, hash(&self.input), domain)
+    }
+
+    fn checked(&self, report: Report) -> Checked {
+        let domain = self.domain.as_ref().map(|(input, _)| input.name.clone());
+        Checked { report, mesh: self.input.name.clone(), domain }
+    }
+}
+
+/// The files that a check writes beside its reports, staged before its work begins.
+struct SideFiles {
+    outputs: Outputs,
+    pictures: Vec<OutputFile>,
+    certificate: Option<usize>,
+    baseline: Option<usize>,
+}
+
+impl SideFiles {
+    fn prepare(arguments: &CheckArguments, cleanup: &Cleanup) -> Result<Self, Failure> {
+        let pictures = output_files(&arguments.picture, None)?;
+        if let Some(other) = pictures.iter().find(|file| !file.form.is_picture()) {
+            let message = "a picture is .svg, .png or .html";
+            return Err(Failure::cannot_run(Diagnostic::new(message).at(other.path.display())));
+        }
+        let mut paths: Vec<PathBuf> = pictures.iter().map(|file| file.path.clone()).collect();
+        let mut place = |path: &Option<PathBuf>| {
+            path.as_ref().map(|path| {
+                paths.push(path.clone());
+                paths.len() - 1
+            })
+        };
+        let certificate = place(&arguments.certificate);
+        let baseline = place(&arguments.save_baseline);
+        let outputs = Outputs::prepare(&paths, cleanup)?;
+        Ok(Self { outputs, pictures, certificate, baseline })
+    }
+
+    fn write(
+        mut self,
+        report: &Report,
+        certificate: &Certificate,
+        picture: &Drawing<'_>,
+    ) -> Result<(), Failure> {
+        for (i, file) in self.pictures.iter().enumerate() {
+            write(&mut self.outputs, i, file, MeshView::from(picture.mesh), picture)?;
+        }
+        if let Some(index) = self.certificate {
+            write_json(&mut self.outputs, index, certificate)?;
+        }
+        if let Some(index) = self.baseline {
+            let quality = report.quality.as_ref().ok_or_else(|| {
+                Failure::cannot_run(Diagnostic::new("no quality was measured: no baseline"))
+            })?;
+            write_json(&mut self.outputs, index, &Baseline::of(quality))?;
+        }
+        self.outputs.commit()
+    }
+}
+
+/// Fills an output with pretty JSON and a line end.
+///
+/// # Errors
+/// Exit code 2 when the disk refuses.
+pub fn write_json(
+    outputs: &mut Outputs,
+    index: usize,
+    value: &impl Serialize,
+) -> Result<(), Failure> {
+    outputs.fill(index, |out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        out.write_all(b"\n")
     })
 }

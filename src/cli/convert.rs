@@ -112,5 +112,6 @@ fn outcome(name: &str, mesh: &MeshData, files: &[OutputFile]) -> Outcome {
             "triangles": triangles,
             "written": paths,
         }),
+        checked: None,
     }
 }

@@ -96,7 +96,7 @@ pub fn run(
     if exit == EXIT_HOLDS {
         outputs.commit()?;
     }
-    Ok(Outcome { exit, text: format!("{text}\n\n{}", files.listing(exit)), json })
+    Ok(Outcome { exit, text: format!("{text}\n\n{}", files.listing(exit)), json, checked: None })
 }
 
 /// The files of the demonstration, in the order they are staged.

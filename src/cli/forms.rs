@@ -14,6 +14,8 @@ pub enum OutputForm {
     Svg,
     /// A pixel picture.
     Png,
+    /// The viewer: one HTML file that needs no network.
+    Html,
 }
 
 /// Extensions that name a form of mesh, in the order that messages list them.
@@ -32,6 +34,7 @@ impl OutputForm {
         Some(match name.to_ascii_lowercase().as_str() {
             "svg" => Self::Svg,
             "png" => Self::Png,
+            "html" => Self::Html,
             "msh22" => msh(MshVersion::V22),
             "msh41" => msh(MshVersion::V41),
             other => {
@@ -44,7 +47,7 @@ impl OutputForm {
     /// Whether it is a picture.
     #[must_use]
     pub fn is_picture(self) -> bool {
-        matches!(self, Self::Svg | Self::Png)
+        matches!(self, Self::Svg | Self::Png | Self::Html)
     }
 }
 
@@ -115,7 +118,7 @@ pub fn output_files(paths: &[PathBuf], said: Option<&str>) -> Result<Vec<OutputF
         let form = output_form(path, said)?;
         let companions = match form {
             OutputForm::Mesh(form, _) => form.companions(),
-            OutputForm::Svg | OutputForm::Png => &[],
+            OutputForm::Svg | OutputForm::Png | OutputForm::Html => &[],
         };
         if is_dash(path) && !companions.is_empty() {
             let diagnostic = Diagnostic::new("standard output takes one file, this form has more");

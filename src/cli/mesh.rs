@@ -1,17 +1,20 @@
 //! `trigrade mesh`: domain in, checked mesh out.
 
 use super::arguments::{Farfield, MeshArguments};
+use super::check::write_json;
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, is_read, output_files};
+use super::input::Input;
 use super::input::is_dash;
 use super::mesh_file::{self, Drawing, malformed, parse};
-use super::outcome::Outcome;
+use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
 use super::watch::{Watch, time};
-use crate::check::Report;
+use crate::check::certificate::{Certificate, FileHash};
+use crate::check::{CheckOptions, Report};
 use crate::domain::Domain;
 use crate::domain::validate::{Plc, validate};
 use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
@@ -37,7 +40,9 @@ pub fn run(
     let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
     let options = arguments.options.options();
     // Staged before the long work: a target that cannot be written is known now.
-    let mut outputs = Outputs::prepare(&paths(&files), cleanup)?;
+    let mut targets = paths(&files);
+    targets.extend(arguments.certificate.clone());
+    let mut outputs = Outputs::prepare(&targets, cleanup)?;
     watch.begin("validate");
     let plc = validate(&domain).map_err(|faults| invalid(&input.name, &faults))?;
     let mut summary = Summary::of(&input.name, &domain, arguments.reading.farfield);
@@ -54,10 +59,14 @@ pub fn run(
         let meshes = read_back(&outputs, &files, &meshed)?;
         watch.begin("check");
         summary.check = Some(check_all(&meshes, &domain)?);
+        if arguments.certificate.is_some() {
+            let certificate = certify(&outputs, &files, &input, summary.check.as_ref())?;
+            write_json(&mut outputs, files.len(), &certificate)?;
+        }
     }
     if summary.exit() == EXIT_HOLDS {
         outputs.commit()?;
-        summary.written = paths(&files);
+        summary.written = targets;
     }
     let laps = watch.finish();
     Ok(summary.outcome(laps, arguments.timings))
@@ -178,6 +187,29 @@ fn check_all(meshes: &[(String, MeshData)], domain: &Domain) -> Result<(String, 
     Ok(first.expect("at least one mesh is read back"))
 }
 
+/// The certificate of the mesh that was read back and checked.
+fn certify(
+    outputs: &Outputs,
+    files: &[OutputFile],
+    domain: &Input,
+    checked: Option<&(String, Report)>,
+) -> Result<Certificate, Failure> {
+    let written = checked.and_then(|(name, report)| {
+        let is_checked = |file: &OutputFile| {
+            file.companion.is_none() && file.path.display().to_string() == *name
+        };
+        Some((files.iter().position(is_checked)?, name, report))
+    });
+    let (index, name, report) = written.ok_or_else(|| {
+        let message = "none of the outputs is a mesh that can be read back and certified";
+        Failure::cannot_run(Diagnostic::new(message))
+    })?;
+    let bytes = outputs.read_back(index)?;
+    let mesh = FileHash::of(name, &[&bytes]);
+    let domain = FileHash::of(&domain.name, &[&domain.bytes]);
+    Ok(Certificate::new(report, &CheckOptions::default(), mesh, Some(domain)))
+}
+
 /// What is told of a run.
 struct Summary {
     name: String,
@@ -212,7 +244,12 @@ impl Summary {
     }
 
     fn outcome(self, laps: Vec<(String, Duration)>, timings: bool) -> Outcome {
-        Outcome { exit: self.exit(), text: self.text(&laps, timings), json: self.json(&laps) }
+        let checked = self.check.as_ref().map(|(mesh, report)| {
+            let (mesh, domain) = (mesh.clone(), Some(self.name.clone()));
+            Box::new(Checked { report: report.clone(), mesh, domain })
+        });
+        let (text, json) = (self.text(&laps, timings), self.json(&laps));
+        Outcome { exit: self.exit(), text, json, checked }
     }
 
     fn text(&self, laps: &[(String, Duration)], timings: bool) -> String {

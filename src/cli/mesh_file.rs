@@ -4,7 +4,7 @@ use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
 use super::forms::{OutputFile, OutputForm, mesh_to_read};
 use super::input::{Input, load};
 use super::output::Outputs;
-use crate::draw::{self, DrawError, Layer, Panel, View};
+use crate::draw::{self, DrawError, Highlight, Layer, Panel, View, Viewer};
 use crate::format::{
     At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
     write_companion, write_mesh,
@@ -111,6 +111,10 @@ pub fn write(
                 .png()
                 .map_err(Refusal::from)
                 .and_then(|png| out.write_all(&png).map_err(Refusal::Disk)),
+            (OutputForm::Html, _) => drawing
+                .html()
+                .map_err(Refusal::from)
+                .and_then(|html| out.write_all(html.as_bytes()).map_err(Refusal::Disk)),
         };
         match outcome {
             Ok(()) => Ok(()),
@@ -161,13 +165,21 @@ pub struct Drawing<'a> {
     pub view: Option<View>,
     /// Width in CSS pixels.
     pub width: f64,
+    /// What it points at.
+    pub highlights: Vec<Highlight>,
 }
 
 impl<'a> Drawing<'a> {
     /// All of `mesh`.
     #[must_use]
     pub fn of(mesh: &'a MeshData, title: impl Into<String>) -> Self {
-        Self { mesh, title: title.into(), view: None, width: draw::Options::default().width }
+        Self {
+            mesh,
+            title: title.into(),
+            view: None,
+            width: draw::Options::default().width,
+            highlights: Vec::new(),
+        }
     }
 
     fn options(&self) -> draw::Options {
@@ -175,7 +187,8 @@ impl<'a> Drawing<'a> {
     }
 
     fn panel<'b>(&'b self, layer: &'b Layer) -> Panel<'b> {
-        let panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
+        let mut panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
+        panel.highlights = &self.highlights;
         match self.view {
             Some(view) => panel.cropped(view),
             None => panel,
@@ -198,5 +211,14 @@ impl<'a> Drawing<'a> {
     pub fn png(&self) -> Result<Vec<u8>, DrawError> {
         let layer = Layer::radius_ratio(self.mesh);
         draw::png(&[self.panel(&layer)], &self.options())
+    }
+
+    /// As a viewer in one HTML file.
+    ///
+    /// # Errors
+    /// None that a mesh alone can give.
+    pub fn html(&self) -> Result<String, DrawError> {
+        let viewer = Viewer { highlights: &self.highlights, ..Viewer::new(&self.title, self.mesh) };
+        draw::html(&viewer)
     }
 }

@@ -1,9 +1,11 @@
 //! What a verb hands back, and where the reports of a run go.
 
-use super::arguments::{Global, ReportKind, ReportTarget};
+use super::arguments::{Global, ReportTarget};
 use super::failure::{Diagnostic, EXIT_FINDINGS, Failure};
 use super::input::is_dash;
 use super::output::{Cleanup, Outputs};
+use crate::check::Report;
+use crate::check::report::{Form, Subject, render};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -16,6 +18,26 @@ pub struct Outcome {
     pub text: String,
     /// For programs.
     pub json: Value,
+    /// The verdict that the other forms of report tell, for verbs that check a mesh.
+    pub checked: Option<Box<Checked>>,
+}
+
+/// A checked mesh, as reports name it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// What the checker said.
+    pub report: Report,
+    /// The mesh file.
+    pub mesh: String,
+    /// The domain file.
+    pub domain: Option<String>,
+}
+
+impl Checked {
+    fn render(&self, form: Form) -> String {
+        let subject = Subject { mesh: &self.mesh, domain: self.domain.as_deref() };
+        render(&self.report, form, &subject)
+    }
 }
 
 /// A failure as programs read it.
@@ -39,7 +61,7 @@ pub fn failure_text(failure: &Failure) -> String {
 /// The reports that a run must write, staged before its work begins.
 #[derive(Debug)]
 pub struct Reports {
-    kinds: Vec<ReportKind>,
+    forms: Vec<Form>,
     outputs: Outputs,
 }
 
@@ -47,26 +69,51 @@ impl Reports {
     /// Stages the reports of `global`.
     ///
     /// # Errors
-    /// Exit code 2 when a report cannot be written where it is wanted.
-    pub fn prepare(global: &Global, cleanup: &Cleanup) -> Result<Self, Failure> {
+    /// Exit code 2 when a report cannot be written where it is wanted, or the verb has no verdict
+    /// that a report of this form could tell.
+    pub fn prepare(global: &Global, has_verdict: bool, cleanup: &Cleanup) -> Result<Self, Failure> {
         let targets = wanted(global);
+        let verdicts_only = |form| !matches!(form, Form::Text | Form::Json);
+        if let Some(target) = targets.iter().find(|t| !has_verdict && verdicts_only(t.form)) {
+            let message = format!("this verb has no {} report", target.form.name());
+            let help = "`check` and `mesh` have; every verb has text and json";
+            return Err(Failure::cannot_run(Diagnostic::new(message).help(help)));
+        }
         let paths: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
         let outputs = Outputs::prepare(&paths, cleanup)?;
-        Ok(Self { kinds: targets.iter().map(|target| target.kind).collect(), outputs })
+        Ok(Self { forms: targets.iter().map(|target| target.form).collect(), outputs })
     }
 
     /// Writes them.
     ///
     /// # Errors
     /// Exit code 2 when the disk refuses.
-    pub fn write(mut self, text: &str, json: &Value) -> Result<(), Failure> {
-        for (i, kind) in self.kinds.iter().enumerate() {
-            self.outputs.fill(i, |out| match kind {
-                ReportKind::Text => writeln!(out, "{text}"),
-                ReportKind::Json => writeln!(out, "{json:#}"),
+    pub fn write(
+        mut self,
+        text: &str,
+        json: &Value,
+        checked: Option<&Checked>,
+    ) -> Result<(), Failure> {
+        for (i, form) in self.forms.iter().enumerate() {
+            self.outputs.fill(i, |out| match (form, checked) {
+                (Form::Json, _) => writeln!(out, "{json:#}"),
+                (Form::Text, _) | (_, None) => writeln!(out, "{text}"),
+                (form, Some(checked)) => out.write_all(checked.render(*form).as_bytes()),
             })?;
         }
         self.outputs.commit()
+    }
+
+    /// Writes them for a run that failed before there was a verdict: each form says so in its own
+    /// way, so that whoever collects reports sees a failure and no gap.
+    ///
+    /// # Errors
+    /// Exit code 2 when the disk refuses.
+    pub fn write_failure(self, failure: &Failure, mesh: &str) -> Result<(), Failure> {
+        let text = failure_text(failure);
+        let checked =
+            Checked { report: Report::not_run(&text), mesh: mesh.to_owned(), domain: None };
+        self.write(&text, &failure_json(failure), Some(&checked))
     }
 }
 
@@ -74,7 +121,7 @@ impl Reports {
 fn wanted(global: &Global) -> Vec<ReportTarget> {
     let mut targets = global.report.clone();
     if global.json {
-        targets.push(ReportTarget { kind: ReportKind::Json, path: "-".into() });
+        targets.push(ReportTarget { form: Form::Json, path: "-".into() });
     }
     targets
 }
@@ -122,13 +169,35 @@ mod tests {
     #[test]
     fn reports_are_written_where_they_are_wanted() {
         let folder = tempfile::tempdir().expect("a temporary directory");
-        let target = |kind, name: &str| ReportTarget { kind, path: folder.path().join(name) };
-        let report = vec![target(ReportKind::Text, "a.txt"), target(ReportKind::Json, "a.json")];
+        let target = |form, name: &str| ReportTarget { form, path: folder.path().join(name) };
+        let report = vec![target(Form::Text, "a.txt"), target(Form::Json, "a.json")];
         let global = Global { report, ..Global::default() };
-        let reports = Reports::prepare(&global, &Cleanup::default()).expect("writable");
-        reports.write("words", &json!({"verdict": "passed"})).expect("written");
+        let reports = Reports::prepare(&global, false, &Cleanup::default()).expect("writable");
+        reports.write("words", &json!({"verdict": "passed"}), None).expect("written");
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("there");
         assert_eq!(read("a.txt"), "words\n");
         assert!(read("a.json").contains("\"verdict\": \"passed\""));
+    }
+
+    #[test]
+    fn verdict_reports_are_refused_by_verbs_without_a_verdict() {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let target = ReportTarget { form: Form::Junit, path: folder.path().join("a.xml") };
+        let global = Global { report: vec![target], ..Global::default() };
+        let refused = Reports::prepare(&global, false, &Cleanup::default());
+        assert_eq!(refused.expect_err("no verdict").exit, 2);
+    }
+
+    #[test]
+    fn a_run_that_failed_still_leaves_a_junit_error() {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let path = folder.path().join("a.xml");
+        let target = ReportTarget { form: Form::Junit, path: path.clone() };
+        let global = Global { report: vec![target], ..Global::default() };
+        let reports = Reports::prepare(&global, true, &Cleanup::default()).expect("writable");
+        let failure = Failure::cannot_run(Diagnostic::new("the file is empty"));
+        reports.write_failure(&failure, "a.msh").expect("written");
+        let xml = std::fs::read_to_string(path).expect("there");
+        assert!(xml.contains("the file is empty"), "{xml}");
     }
 }
