@@ -21,7 +21,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Exit code 2: the mesher cannot be started, a name is unknown, a folder cannot be used.
 pub fn torture(arguments: &TortureArguments, console: &Console) -> Result<Outcome, Failure> {
     if arguments.list {
-        return Ok(Outcome { exit: EXIT_HOLDS, text: list_text(), json: list_json() });
+        return Ok(Outcome {
+            exit: EXIT_HOLDS,
+            text: list_text(),
+            json: list_json(),
+            checked: None,
+        });
     }
     let plan = plan(arguments)?;
     let run = match &arguments.replay {
@@ -40,6 +45,7 @@ pub fn torture(arguments: &TortureArguments, console: &Console) -> Result<Outcom
         exit: if is_clean { EXIT_HOLDS } else { EXIT_FINDINGS },
         text: report::text(&run, &plan),
         json: report::json(&run, &plan),
+        checked: None,
     })
 }
 
