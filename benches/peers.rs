@@ -26,14 +26,17 @@ fn on_processor() -> Option<f64> {
     text.split_whitespace().next()?.parse().ok()
 }
 
+/// Best of a few samples, each of runs over about a million points: the system counts processor
+/// time in ticks of milliseconds.
 fn best<T>(points: usize, now: impl Fn() -> f64, mut run: impl FnMut() -> T) -> f64 {
-    let repeats = (3_000_000 / points.max(1)).clamp(2, 10);
-    let once = |_| {
+    let runs = (1_000_000 / points.max(1)).max(1);
+    let samples = if points < 5_000_000 { 3 } else { 1 };
+    let sample = |_| {
         let start = now();
-        black_box(run());
+        (0..runs).for_each(|_| drop(black_box(run())));
         now() - start
     };
-    (0..repeats).map(once).fold(f64::INFINITY, f64::min) / points as f64
+    (0..samples).map(sample).fold(f64::INFINITY, f64::min) / (points * runs) as f64
 }
 
 fn time<T>(points: usize, run: impl FnMut() -> T) -> f64 {
@@ -107,11 +110,11 @@ fn point_clouds(clouds: &[(&str, Vec<Point2>)]) {
     println!("ns/point               points     auto   auto 2    spade  delaunator  bytes/point");
     for (name, points) in clouds {
         let n = points.len();
+        let bytes = memory(n, || delaunay(points, Options::default()));
         let (one, two) = (auto(points, false), auto(points, true));
         let slow = slow_for_peers(name, n);
         let spade = if slow { f64::NAN } else { time(n, || spade(points)) };
         let delaunator = if slow { f64::NAN } else { delaunator(points) };
-        let bytes = memory(n, || delaunay(points, Options::default()));
         println!(
             "{name:<18} {n:>10} {one:>8.0} {two:>8.0} {spade:>8.0} {delaunator:>11.0} {bytes:>12.0}"
         );

@@ -8,8 +8,11 @@ mod hull;
 mod incremental;
 pub(crate) mod lawson;
 mod order;
+mod split;
 mod sweep;
 mod watson;
+
+pub use split::{Split, split_crossings};
 
 use crate::point::Point2;
 use crate::triangulation::constrain::Obstacle;
@@ -208,6 +211,12 @@ pub enum CdtError {
         first: u32,
         /// The higher index.
         second: u32,
+    },
+    /// Cutting crossings does not come to an end.
+    #[error("cutting segment {segment} where it crosses others makes new crossings without end")]
+    Tangled {
+        /// Index of a segment not done.
+        segment: u32,
     },
     /// A segment passes through a point that is none of its ends.
     #[error("segment {segment} passes through point {vertex} at {point}")]

@@ -83,6 +83,15 @@ pub(crate) fn legalize(
 pub(crate) fn legalize_all(triangulation: &mut Triangulation, points: &[Point2]) {
     let mut stack: Vec<HalfEdgeId> =
         triangulation.triangles().flat_map(TriangleId::half_edges).collect();
+    legalize_from(triangulation, points, &mut stack);
+}
+
+/// Flips the finite edges on the stack that are not Delaunay, and those that this disturbs.
+pub(crate) fn legalize_from(
+    triangulation: &mut Triangulation,
+    points: &[Point2],
+    stack: &mut Vec<HalfEdgeId>,
+) {
     while let Some(e) = stack.pop() {
         let Some(f) = triangulation.twin(e).filter(|_| !triangulation.is_constrained(e)) else {
             continue;
@@ -91,6 +100,8 @@ pub(crate) fn legalize_all(triangulation: &mut Triangulation, points: &[Point2])
         let ghost = triangulation.is_ghost(e.triangle()) || triangulation.is_ghost(f.triangle());
         if !ghost && conflicts(triangulation, points, f.triangle(), points[apex.index()]) {
             triangulation.flip(e);
+            // A flip renames its outer edges; an edge still on the stack under its old name is one
+            // of these four.
             stack.extend([e.next(), e.prev(), f.next(), f.prev()]);
         }
     }

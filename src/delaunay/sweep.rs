@@ -306,3 +306,62 @@ impl PopIf for BinaryHeap<CircleEvent> {
         if due { self.pop() } else { None }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sorted points of a rounded circle, a grid and a scattered lot.
+    fn inputs() -> Vec<Vec<Point2>> {
+        let angle = |i: u32| f64::from(i) * 0.031_4;
+        let circle = (0..200).map(|i| Point2::new(libm::cos(angle(i)), libm::sin(angle(i))));
+        let grid = (0..225).map(|i| Point2::new(f64::from(i % 15) * 0.1, f64::from(i / 15) * 0.1));
+        let lot = (0..500_u32).map(|i| {
+            let hash = i.wrapping_mul(0x9E37_79B1);
+            Point2::new(f64::from(hash >> 16), f64::from(hash.wrapping_mul(0x85EB_CA6B) >> 16))
+        });
+        let mut inputs = vec![circle.collect::<Vec<_>>(), grid.collect(), lot.collect()];
+        inputs.iter_mut().for_each(|points| points.sort_unstable_by(|a, b| a.lexicographic(*b)));
+        inputs.iter_mut().for_each(|points| points.dedup());
+        inputs
+    }
+
+    #[test]
+    fn the_beach_is_certified_on_ordinary_points() {
+        for points in inputs() {
+            let triangles = Beach::sweep(&points).unwrap();
+            assert!(certify(&points, &triangles).is_some(), "{} points", points.len());
+        }
+    }
+
+    #[test]
+    fn the_certificate_refuses_what_does_not_cover_the_hull() {
+        for points in inputs() {
+            let triangles = Beach::sweep(&points).unwrap();
+            for drop in 0..triangles.len() {
+                let mut fewer = triangles.clone();
+                fewer.remove(drop);
+                assert!(certify(&points, &fewer).is_none());
+            }
+            let mut twice = triangles.clone();
+            twice.push(triangles[0]);
+            assert!(certify(&points, &twice).is_none());
+        }
+    }
+
+    #[test]
+    fn without_a_beach_the_triangles_are_the_same() {
+        for points in inputs() {
+            let mut other = sweep_hull(&points);
+            legalize_all(&mut other, &points);
+            other.verify_geometry(&points).unwrap();
+            let corners = |t: &Triangulation| {
+                let mut list: Vec<_> = t.triangles().map(|u| t.corners(u)).collect();
+                list.iter_mut().for_each(|c| c.sort_unstable());
+                list.sort_unstable();
+                list
+            };
+            assert_eq!(corners(&other), corners(&triangulate(&points)));
+        }
+    }
+}

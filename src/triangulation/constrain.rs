@@ -90,6 +90,25 @@ impl Triangulation {
         Ok(left)
     }
 
+    /// The vertices on either side of the triangles that the segment from the origin of `from` to
+    /// `to` crosses; none if it is an edge.
+    ///
+    /// # Errors
+    /// The first [`Obstacle`] on the way.
+    pub fn beside_segment(
+        &self,
+        points: &[Point2],
+        from: HalfEdgeId,
+        to: VertexId,
+    ) -> Result<Vec<VertexId>, Obstacle> {
+        if self.half_edge_to(from, to).is_some() {
+            return Ok(Vec::new());
+        }
+        let Cavity { left, right, .. } = self.dig(points, from, to)?;
+        let inner = left.iter().skip(1).chain(right.iter().skip(1));
+        Ok(inner.map(|edge| edge.start).collect())
+    }
+
     /// Collects the cavity of the segment without changing anything but marks of its triangles.
     fn dig(&self, points: &[Point2], from: HalfEdgeId, to: VertexId) -> Result<Cavity, Obstacle> {
         let (a, b) = (points[self.origin(from).index()], points[to.index()]);

@@ -275,3 +275,46 @@ pub(crate) fn between(a: Point2, m: Point2, b: Point2) -> bool {
     let order = a.lexicographic(m);
     order.is_ne() && order == m.lexicographic(b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delaunay::cdt;
+
+    fn lattice(side: u32) -> Vec<Point2> {
+        let cells = 0..side * side;
+        cells.map(|i| Point2::new(f64::from(i % side), f64::from(i / side))).collect()
+    }
+
+    /// The place as a set of vertices, whatever half-edge names it.
+    fn vertices(t: &Triangulation, place: Location) -> Vec<VertexId> {
+        let mut list = match place {
+            Location::Inside(u) => t.corners(u).to_vec(),
+            Location::OnEdge(e) => vec![t.origin(e), t.dest(e)],
+            Location::OnVertex(e) => vec![t.origin(e)],
+            Location::Outside(_) => Vec::new(),
+        };
+        list.sort_unstable();
+        list
+    }
+
+    // spec: T2
+    #[test]
+    fn the_straight_walk_finds_what_the_visibility_walk_finds() {
+        let points = lattice(6);
+        let t = cdt(&points, &[[1, 14], [9, 34], [20, 33]]).unwrap().triangulation;
+        for start in t.triangles().filter(|&u| !t.is_ghost(u)) {
+            for i in -2..26 {
+                for j in -2..26 {
+                    let q = Point2::new(f64::from(i) / 4.0, f64::from(j) / 4.0);
+                    let straight = t.straight_walk(&points, q, start.half_edge(0));
+                    let walk = t.visibility_walk(&points, q, start).unwrap();
+                    assert_eq!(vertices(&t, straight), vertices(&t, walk), "{start:?} {q}");
+                    if let Location::Outside(e) = straight {
+                        assert_eq!(t.side_of(&points, e, q), Sign::Negative);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -2,7 +2,8 @@
 
 use trigrade::background::{Background, BackgroundError, INSIDE, OUTSIDE, SeedKind};
 use trigrade::domain::Region;
-use trigrade::domain::validate::{Plc, PlcInside, PlcSegment};
+use trigrade::domain::validate::{Plc, PlcInside, PlcSegment, validate};
+use trigrade::format::domain_file::{DomainForm, ReadOptions, read_domain};
 use trigrade::point::Point2;
 use trigrade::triangulation::Across;
 
@@ -198,4 +199,26 @@ fn an_isolated_point_is_a_vertex_of_the_open_region() {
     let (open, _) = Background::new(&plc).unwrap().open_region();
     assert_eq!(open.live_count(), 4);
     assert!(open.outgoing(5)[4].is_some());
+}
+
+// spec: T1 T6 T7
+#[test]
+fn real_boundaries_have_a_background() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/polygons");
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let mut sound = 0;
+    for path in paths.into_iter().filter(|p| p.extension().is_some_and(|e| e == "poly")) {
+        let bytes = std::fs::read(&path).unwrap();
+        let Ok(domain) = read_domain(&bytes, DomainForm::Poly, &ReadOptions::default()) else {
+            continue;
+        };
+        let Ok(plc) = validate(&domain) else { continue };
+        let background = Background::new(&plc).unwrap_or_else(|e| panic!("{path:?}: {e}"));
+        background.triangulation.verify_geometry(&plc.points).expect("constrained Delaunay");
+        check_open(&background);
+        sound += 1;
+    }
+    assert!(sound > 100, "the data has hundreds of sound domains, found {sound}");
 }

@@ -5,3 +5,4 @@ mod cdt;
 mod clouds;
 mod engines;
 mod naive;
+mod split;
