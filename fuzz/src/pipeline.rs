@@ -19,7 +19,12 @@ pub fn run(bytes: &[u8]) {
         Ok(meshed) => {
             let report =
                 check(&MeshData::from(&meshed.mesh), Some(&domain), &CheckOptions::default());
-            assert!(report.passed(), "{:?}\n{options:?}\n{domain:?}", report.findings);
+            assert!(
+                report.passed(),
+                "{:?} {:?}\n{options:?}\n{domain:?}",
+                report.findings,
+                report.could_not_run
+            );
         }
         Err(MeshError::Invalid(faults)) => assert!(!faults.is_empty(), "{domain:?}"),
         Err(MeshError::Front(error)) => panic!("{error}\n{options:?}\n{domain:?}"),
