@@ -156,6 +156,13 @@ fn no_stage_reads_a_later_one() {
 }
 
 #[test]
+fn torture_knows_nothing_of_the_mesher() {
+    const MESHER: [&str; 7] =
+        ["background", "delaunay", "front", "improve", "mesher", "size", "triangulation"];
+    forbid_modules(|name| is_of(name, "torture"), |module| !MESHER.contains(&module));
+}
+
+#[test]
 fn the_triangulation_knows_no_coordinates() {
     for path in files(&root().join("src"), &["rs"]) {
         if name(&path) != "src/triangulation.rs" {

@@ -26,7 +26,7 @@ fn write_page(out: &mut String, run: &Run, plan: &Plan) -> std::fmt::Result {
     let (cases, failures) = (run.records.len(), run.failures().count());
     write!(
         out,
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><title>torture of {name}\
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><title>torture of {name}\
          </title><style>{STYLE}</style></head><body><h1>torture of {name}</h1>\
          <p>{failures} failures in {cases} cases, seed {}. Command:</p><pre>{}</pre>",
         plan.selection.seed,

@@ -1,0 +1,113 @@
+//! `trigrade torture` as a user meets it.
+
+#![cfg(all(feature = "cli", unix))]
+
+use std::fs;
+use std::process::{Command, Output};
+
+fn torture(arguments: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_trigrade"));
+    program.arg("torture").args(arguments).output().expect("the program runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+const SMALL: [&str; 5] = ["--cases", "40", "--max-size", "8", "--plain"];
+
+// spec: R12 R10
+#[test]
+fn this_program_passes_and_that_is_exit_code_0() {
+    let output = torture(&SMALL);
+    let said = text(&output.stdout) + &text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("self: 0 failures in 40 cases"), "{said}");
+}
+
+// spec: R12 R9
+#[test]
+fn failures_are_exit_code_1_with_reports_and_reproducers() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let out = folder.path().join("torture");
+    let out_text = out.display().to_string();
+    let extra = ["--mesher", "test -s {in} && exit 1", "--shrink", "1", "--trials", "5", "--json"];
+    let arguments = [&SMALL[..], &extra, &["--out", &out_text]].concat();
+    let output = torture(&arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["schema"], "trigrade-torture/1");
+    assert_eq!(json["cases"], 40);
+    assert!(json["verdicts"]["refused-valid"].as_u64() > Some(10), "{json}");
+    for name in ["report.html", "report.json", "state.jsonl"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let below = json["reproducers"][0]["folder"].as_str().expect("a folder");
+    for name in ["case.json", "original.json", "shrunk.json", "boundary.poly"] {
+        assert!(out.join(below).join(name).is_file(), "{name}");
+    }
+    let replayed = torture(&["--replay", &out_text]);
+    let said = text(&replayed.stdout) + &text(&replayed.stderr);
+    assert_eq!(replayed.status.code(), Some(0), "this program meshes what another refused: {said}");
+}
+
+// spec: R12
+#[test]
+fn what_cannot_run_is_exit_code_2_and_says_what_would_help() {
+    let cases: [(&[&str], &str); 8] = [
+        (&["--mesher", "no-such-program-as-this {in} {out}"], "cannot be started"),
+        (&["--mesher", "cat"], "{in}"),
+        (&["--preset", "no-such"], "gmsh, triangle"),
+        (&["--family", "no-such"], "--list"),
+        (&["--form", "no-such"], "geojson"),
+        (&["--replay", "no/such/folder"], "case.json"),
+        (&["--memory", "1"], "16M"),
+        (&["--timeout", "0"], "above 0"),
+    ];
+    for (arguments, expected) in cases {
+        let output = torture(arguments);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+}
+
+// spec: R6
+#[test]
+fn a_hang_and_a_crash_are_told_apart_and_end_nothing() {
+    let small = ["--cases", "3", "--max-size", "5", "--shrink", "0", "--family", "stars", "--json"];
+    let class = |extra: &[&str]| {
+        let output = torture(&[&small[..], extra].concat());
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        json["verdicts"].as_object().expect("counts").keys().cloned().collect::<Vec<_>>()
+    };
+    assert_eq!(class(&["--mesher", "sleep 60; : {in}", "--timeout", "0.2"]), ["hang"]);
+    assert_eq!(class(&["--mesher", "kill -SEGV $$; : {in}"]), ["crash"]);
+}
+
+#[test]
+fn the_list_names_families_and_presets() {
+    let output = torture(&["--list"]);
+    let said = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0));
+    for name in ["near-collinear", "crossing-by-little", "invalid (D8)", "netgen", "mmg2d"] {
+        assert!(said.contains(name), "{name}: {said}");
+    }
+}
+
+// spec: R9
+#[test]
+fn verdicts_do_not_depend_on_the_number_of_threads() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let verdicts = |threads: &str| {
+        let out = folder.path().join(threads).display().to_string();
+        let extra = ["--mesher", "test -s {in} && exit 1", "--shrink", "0", "--threads", threads];
+        torture(&[&SMALL[..], &extra, &["--out", &out]].concat());
+        let text = fs::read_to_string(format!("{out}/report.json")).expect("a report");
+        let mut json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let list = json["failed"].as_array_mut().expect("failures");
+        list.iter_mut().for_each(|record| record["seconds"] = 0.into());
+        json["failed"].clone()
+    };
+    assert_eq!(verdicts("1"), verdicts("3"));
+}
