@@ -257,7 +257,7 @@ fn collect(
         topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
     let renumber = Renumber::used(&triangles, points.len());
     for corner in triangles.iter_mut().flatten() {
-        *corner = renumber.new(*corner);
+        *corner = renumber.number(*corner);
     }
     let regions = region_markers(&topology, background);
     let edges = marked_edges(background, &renumber);
@@ -281,7 +281,7 @@ fn marked_edges(background: &Background, renumber: &Renumber) -> Vec<MarkedEdge>
         .iter()
         .chain(interior.iter().filter(|edge| edge.vertices[0] < edge.vertices[1]))
         .map(|edge| MarkedEdge {
-            vertices: edge.vertices.map(|v| renumber.new(v.0)),
+            vertices: edge.vertices.map(|v| renumber.number(v.0)),
             marker: edge.marker,
         })
         .collect()
@@ -306,7 +306,7 @@ impl Renumber {
         Self { new }
     }
 
-    fn new(&self, old: u32) -> u32 {
+    fn number(&self, old: u32) -> u32 {
         self.new[old as usize]
     }
 

@@ -273,7 +273,7 @@ fn report_intersections(
     for &pair in pairs {
         let around = |e: &&Irregular| pair.iter().all(|&t| e.triangles().any(|u| u == t));
         let [s, t] = pair.map(&flat_neighbours);
-        if crowded.iter().any(|e| around(e)) || !s.is_disjoint(&t) {
+        if crowded.iter().any(around) || !s.is_disjoint(&t) {
             continue;
         }
         out.add(Id::SelfIntersection, || {

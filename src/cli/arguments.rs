@@ -60,7 +60,7 @@ pub enum Verb {
     /// Mesh a plane domain; the mesh is checked before it is handed out.
     Mesh(Box<MeshArguments>),
     /// Check a mesh exactly, anybody's mesh, with or without its domain.
-    Check(CheckArguments),
+    Check(Box<CheckArguments>),
     /// Mesh the NACA 0012 airfoil by three methods and leave meshes, pictures and a report.
     Demo(DemoArguments),
     /// Print the rule behind an id such as D4 or M3; without an id, list all rules.

@@ -23,13 +23,13 @@ impl Prng {
     #[must_use]
     pub fn of(seed: u64, index: u64) -> Self {
         let mut mixer = Self::new(seed);
-        let base = mixer.next();
+        let base = mixer.next_u64();
         let mut member = Self::new(base ^ index.wrapping_mul(GAMMA));
-        Self::new(member.next())
+        Self::new(member.next_u64())
     }
 
     /// The next 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(GAMMA);
         let z = self.state;
         let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -39,7 +39,7 @@ impl Prng {
 
     /// A number below `n`, which is above 0; the bias is below n / 2^64.
     pub fn below(&mut self, n: u64) -> u64 {
-        let wide = u128::from(self.next()) * u128::from(n);
+        let wide = u128::from(self.next_u64()) * u128::from(n);
         (wide >> 64) as u64
     }
 
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn the_stream_is_that_of_the_reference_code() {
         let mut prng = Prng::new(1_234_567);
-        let first: Vec<u64> = (0..3).map(|_| prng.next()).collect();
+        let first: Vec<u64> = (0..3).map(|_| prng.next_u64()).collect();
         let expected =
             [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         assert_eq!(first, expected);
@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn streams_of_one_seed_differ() {
         let firsts: std::collections::BTreeSet<u64> =
-            (0..1000).map(|i| Prng::of(7, i).next()).collect();
+            (0..1000).map(|i| Prng::of(7, i).next_u64()).collect();
         assert_eq!(firsts.len(), 1000);
-        assert_ne!(Prng::of(7, 0).next(), Prng::of(8, 0).next());
+        assert_ne!(Prng::of(7, 0).next_u64(), Prng::of(8, 0).next_u64());
     }
 
     #[test]

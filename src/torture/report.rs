@@ -120,7 +120,7 @@ pub fn text(run: &Run, plan: &Plan) -> String {
 fn write_text(out: &mut String, run: &Run, plan: &Plan) -> std::fmt::Result {
     write_table(out, &Table::of(run))?;
     run.reproducers.iter().try_for_each(|reproducer| write_reproducer(out, reproducer, plan))?;
-    out.push_str("\n");
+    out.push('\n');
     if let Some(record) = slowest(run).first() {
         write!(out, "\nslowest: {} {}, {:.2} s", record.family, record.index, record.seconds)?;
     }

@@ -16,7 +16,7 @@ pub struct Level {
 impl Level {
     /// Whether the domain lies inside the loop, next to it.
     pub const fn is_outer(self) -> bool {
-        self.depth % 2 == 0
+        self.depth.is_multiple_of(2)
     }
 }
 
