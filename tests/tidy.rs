@@ -108,7 +108,7 @@ fn is_of(name: &str, module: &str) -> bool {
 /// Plain data and what both halves of the house may use.
 const PLAIN: [&str; 3] = ["point", "mesh", "domain"];
 
-// spec: K7
+// spec: C1 K7
 #[test]
 fn check_imports_nothing_it_checks() {
     forbid_modules(
