@@ -49,7 +49,10 @@ fn the_first_cases_never_change() {
             sum = sum.rotate_left(5) ^ p.key()[0] ^ p.key()[1].rotate_left(32);
         }
     }
-    assert_eq!(sum, 3_434_603_054_367_954_429, "the generators changed: reproducers by seed and number are void");
+    assert_eq!(
+        sum, 3_434_603_054_367_954_429,
+        "the generators changed: reproducers by seed and number are void"
+    );
 }
 
 #[test]
