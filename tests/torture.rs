@@ -1,6 +1,6 @@
 //! Torture of this crate's own mesher, and of mutants of it that must be caught.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::catch_unwind;
 use trigrade::check::{CheckOptions, check};
 use trigrade::domain::Domain;
@@ -17,6 +17,7 @@ fn answer(domain: &Domain) -> Answer {
     match outcome {
         Ok(Ok(meshed)) => Answer::Mesh(Box::new(MeshData::from(&meshed.mesh))),
         Ok(Err(MeshError::Invalid(faults))) => Answer::Refused(faults[0].to_string()),
+        Ok(Err(error @ MeshError::TooMany { .. })) => Answer::Limit(error.to_string()),
         Ok(Err(error)) => Answer::Refused(error.to_string()),
         Err(_) => Answer::Crash("it panicked".into()),
     }
@@ -78,10 +79,6 @@ fn border(mesh: &MeshData) -> Vec<[u32; 2]> {
     seen.into_iter().filter(|entry| entry.1 == 1).map(|entry| entry.0).collect()
 }
 
-fn is_border(mesh: &MeshData, vertex: u32) -> bool {
-    border(mesh).iter().flatten().any(|&v| v == vertex)
-}
-
 fn drop_a_triangle(mesh: &mut MeshData) -> bool {
     mesh.triangles.len() > 1 && mesh.triangles.pop().is_some()
 }
@@ -105,7 +102,8 @@ fn move_a_border_vertex_by_an_ulp(mesh: &mut MeshData) -> bool {
 
 /// Far enough to turn a triangle over.
 fn move_an_inner_vertex_away(mesh: &mut MeshData) -> bool {
-    let inner = (0..mesh.points.len() as u32).find(|&v| !is_border(mesh, v));
+    let rim: BTreeSet<u32> = border(mesh).into_iter().flatten().collect();
+    let inner = (0..mesh.points.len() as u32).find(|v| !rim.contains(v));
     let Some(inner) = inner else { return false };
     let [x, y, _] = mesh.points[border(mesh)[0][0] as usize];
     let at = &mut mesh.points[inner as usize];
@@ -169,11 +167,12 @@ fn hang_a_node(mesh: &mut MeshData) -> bool {
 
 /// The convex hull's view: a further triangle over a concave corner of the boundary.
 fn fill_a_notch(mesh: &mut MeshData) -> bool {
+    let outline: BTreeSet<[u32; 2]> = border(mesh).into_iter().collect();
     let rim: Vec<[u32; 2]> = mesh
         .triangles
         .iter()
         .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-        .filter(|[a, b]| border(mesh).contains(&[*a.min(b), *a.max(b)]))
+        .filter(|[a, b]| outline.contains(&[*a.min(b), *a.max(b)]))
         .collect();
     let next = |v: u32| rim.iter().find(|edge| edge[0] == v).map(|edge| edge[1]);
     let notch = rim.iter().find_map(|&[a, b]| {
@@ -201,9 +200,9 @@ const MUTATIONS: [(&str, Mutation); 10] = [
     ("fills a notch", fill_a_notch),
 ];
 
-/// A mutant errs only now and then: in one case of sixteen.
+/// A mutant errs only now and then: in one case of thirteen.
 fn mutated(case: &Case, mutate: Mutation) -> Option<Judgement> {
-    if case.index % 16 != 3 {
+    if case.index % 13 != 3 {
         return None;
     }
     let Answer::Mesh(mut mesh) = answer(&case.domain) else { return None };
@@ -232,7 +231,7 @@ fn every_mutant_is_caught_within_500_cases() {
 fn no_right_mesh_is_mistaken_for_a_mutant() {
     let selection = Selection { size_max: 20, ..Selection::new(77) };
     let untouched: Mutation = |_| true;
-    for index in (0..500).filter(|index| index % 16 == 3) {
+    for index in (0..500).filter(|index| index % 13 == 3) {
         let case = selection.case(index).expect("a family");
         if let Some(judgement) = mutated(&case, untouched) {
             let Judgement { class, reason, .. } = judgement;

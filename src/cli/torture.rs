@@ -108,6 +108,7 @@ fn tool(arguments: &TortureArguments) -> Result<Tool, Failure> {
             command: command.clone(),
             form: BoundaryForm::Poly,
             answer: "msh".to_owned(),
+            limit: None,
             allow: Vec::new(),
             install: None,
         },

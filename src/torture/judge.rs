@@ -21,6 +21,8 @@ pub enum Answer {
     Hang(String),
     /// It ran into the memory limit.
     OutOfMemory(String),
+    /// It named a limit that its documentation announces, and stopped before any work.
+    Limit(String),
     /// The boundary cannot be told in the mesher's input format, so it was not asked.
     NotAsked(String),
 }
@@ -49,13 +51,15 @@ pub enum Class {
     BoundaryAltered,
     /// Its mesh is right, but misses a quality gate.
     BelowGate,
+    /// It stopped at a limit that its documentation announces.
+    Limit,
     /// It was not asked.
     NotAsked,
 }
 
 impl Class {
     /// All classes, in the order of tables.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Passed,
         Self::Crash,
         Self::Hang,
@@ -66,6 +70,7 @@ impl Class {
         Self::WrongMesh,
         Self::BoundaryAltered,
         Self::BelowGate,
+        Self::Limit,
         Self::NotAsked,
     ];
 
@@ -83,6 +88,7 @@ impl Class {
             Self::WrongMesh => "wrong-mesh",
             Self::BoundaryAltered => "boundary-altered",
             Self::BelowGate => "below-gate",
+            Self::Limit => "limit",
             Self::NotAsked => "not-asked",
         }
     }
@@ -90,7 +96,7 @@ impl Class {
     /// Whether it counts against the mesher.
     #[must_use]
     pub const fn is_failure(self) -> bool {
-        !matches!(self, Self::Passed | Self::NotAsked)
+        !matches!(self, Self::Passed | Self::Limit | Self::NotAsked)
     }
 }
 
@@ -173,6 +179,7 @@ pub fn judge(domain: &Domain, claim: Claim, answer: &Answer, demands: &Demands) 
         (Answer::Crash(how), _) => Judgement::new(Class::Crash, how),
         (Answer::Hang(how), _) => Judgement::new(Class::Hang, how),
         (Answer::OutOfMemory(how), _) => Judgement::new(Class::OutOfMemory, how),
+        (Answer::Limit(why), _) => Judgement::new(Class::Limit, why),
         (Answer::NotAsked(why), _) => Judgement::new(Class::NotAsked, why),
         (Answer::Refused(why), Claim::Valid) => Judgement::new(Class::RefusedValid, why),
         (Answer::Unreadable(why), Claim::Valid) => Judgement::new(Class::Unreadable, why),
@@ -225,6 +232,9 @@ fn class_of(report: &Report, findings: &[Id]) -> Class {
 }
 
 fn reason_of(report: &Report) -> String {
+    if report.verdict == Verdict::CouldNotRun && !report.could_not_run.is_empty() {
+        return report.could_not_run.join("; ");
+    }
     let told = |finding: &Finding| format!("{}: {}", finding.id, finding.message);
     let first = report.findings.iter().find(|finding| !finding.allowed).map(told);
     let gate = || {
@@ -273,6 +283,7 @@ mod tests {
         assert_eq!(valid(&Answer::Crash("signal 11".into())), Class::Crash);
         assert_eq!(valid(&Answer::Hang("10 s".into())), Class::Hang);
         assert_eq!(valid(&Answer::OutOfMemory("1 GB".into())), Class::OutOfMemory);
+        assert_eq!(valid(&Answer::Limit("too many triangles".into())), Class::Limit);
         assert_eq!(valid(&Answer::NotAsked("roles".into())), Class::NotAsked);
     }
 

@@ -22,33 +22,53 @@ pub fn carved(domain: &Domain) -> Result<Domain, ExportError> {
 fn holes(domain: &Domain) -> Result<Vec<Point2>, ExportError> {
     let cannot = |what| BoundaryForm::Poly.cannot_say(what);
     let levels = levels(domain).ok_or(cannot("which of these touching loops lies in which"))?;
-    let holes = (0..levels.len()).filter(|&i| !levels[i].is_outer());
-    holes
-        .map(|hole| {
-            let inner: Vec<usize> =
-                (0..levels.len()).filter(|&i| levels[i].around == Some(hole)).collect();
-            point_in(domain, hole, &inner).ok_or(cannot("a hole with no point in it"))
-        })
-        .collect()
+    let mut points = Vec::new();
+    for hole in (0..levels.len()).filter(|&i| !levels[i].is_outer()) {
+        let inner: Vec<usize> =
+            (0..levels.len()).filter(|&i| levels[i].around == Some(hole)).collect();
+        let before = points.len();
+        if inner.is_empty() {
+            points.extend(points_in(domain, hole, &[], hole).next());
+        } else {
+            // Islands that touch may cut the hole in several faces: a point at every corner. More
+            // than one in a face does no harm.
+            for of in inner.iter().copied().chain([hole]) {
+                points.extend(points_in(domain, hole, &inner, of));
+            }
+        }
+        if points.len() == before {
+            return Err(cannot("a hole with no point in it"));
+        }
+    }
+    Ok(points)
 }
 
-/// A point inside a loop and outside the loops directly in it.
-fn point_in(domain: &Domain, hole: usize, inner: &[usize]) -> Option<Point2> {
-    let is_good = |p: &Point2| {
+/// Points inside a loop and outside the loops directly in it, one near each corner of loop `of`
+/// where one is found.
+fn points_in<'a>(
+    domain: &'a Domain,
+    hole: usize,
+    inner: &'a [usize],
+    of: usize,
+) -> impl Iterator<Item = Point2> + 'a {
+    let is_good = move |p: &Point2| {
         is_inside(domain, hole, *p) == Some(true)
             && inner.iter().all(|&i| is_inside(domain, i, *p) == Some(false))
     };
-    let vertices = &domain.loops[hole].vertices;
+    let vertices = &domain.loops[of].vertices;
     let n = vertices.len();
-    let at = |i: usize| domain.points[vertices[i % n] as usize];
-    (0..n).find_map(|i| {
+    let at = move |i: usize| domain.points[vertices[i % n] as usize];
+    let middle = |p: f64, q: f64| p / 2.0 + q / 2.0;
+    (0..n).filter_map(move |i| {
         let (a, b, c) = (at(i), at(i + 1), at(i + 2));
-        let middle = |p: f64, q: f64| p / 2.0 + q / 2.0;
-        let mut p = Point2::new(middle(a.x, c.x), middle(a.y, c.y));
-        // Ever nearer to the corner, until nothing else is between.
-        (0..60).find_map(|_| {
-            p = Point2::new(middle(p.x, b.x), middle(p.y, b.y));
-            is_good(&p).then_some(p)
+        let between = Point2::new(middle(a.x, c.x), middle(a.y, c.y));
+        let opposite = Point2::new(b.x + (b.x - between.x), b.y + (b.y - between.y));
+        [between, opposite].into_iter().find_map(|mut p| {
+            // Ever nearer to the corner, until nothing else is between.
+            (0..60).find_map(|_| {
+                p = Point2::new(middle(p.x, b.x), middle(p.y, b.y));
+                is_good(&p).then_some(p)
+            })
         })
     })
 }

@@ -16,6 +16,7 @@ fn plan() -> Plan {
             command: "mesher \"{in}\" {out}".into(),
             form: BoundaryForm::Json,
             answer: "off".into(),
+            limit: None,
             allow: Vec::new(),
             install: None,
         },

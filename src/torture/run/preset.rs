@@ -96,6 +96,8 @@ impl Preset {
             command,
             form: self.form,
             answer: self.answer.to_owned(),
+            // Only our own words are known for sure.
+            limit: (self.name == "self").then_some("above the limit of"),
             allow: self.allow.to_vec(),
             install: Some(self.install),
         }

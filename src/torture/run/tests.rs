@@ -14,6 +14,7 @@ fn plan(command: &str, out: Option<&Path>) -> Plan {
             command: command.into(),
             form: BoundaryForm::Json,
             answer: "off".into(),
+            limit: None,
             allow: Vec::new(),
             install: None,
         },

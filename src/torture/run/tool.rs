@@ -24,6 +24,8 @@ pub struct Tool {
     pub form: BoundaryForm,
     /// Its answer: an extension for `{out}`, or a path that starts with `{stem}`.
     pub answer: String,
+    /// Words by which it says that it stopped at a limit that its documentation announces.
+    pub limit: Option<&'static str>,
     /// Findings that do not count against it.
     pub allow: Vec<Id>,
     /// How to install it, if that is known.
@@ -129,6 +131,9 @@ impl Tool {
         match ended.ending {
             Ending::TimedOut => Answer::Hang(format!("still running after {:?}", limits.time)),
             Ending::Exit(0) => read_answer(&self.output(folder), said),
+            Ending::Exit(_) if self.limit.is_some_and(|words| said.contains(words)) => {
+                Answer::Limit(said.clone())
+            }
             _ if is_out_of_memory(said) => out_of_memory(),
             Ending::Signal(signal) => Answer::Crash(format!("ended by signal {signal}: {said}")),
             Ending::Exit(code) if said.contains("panicked at") => {
@@ -182,6 +187,7 @@ mod tests {
             command: command.into(),
             form: BoundaryForm::Json,
             answer: "off".into(),
+            limit: Some("too many"),
             allow: Vec::new(),
             install: Some("by hand"),
         };
@@ -200,6 +206,7 @@ mod tests {
     #[test]
     fn answers_are_told_apart() {
         assert!(matches!(answer("test -s {in} && exit 1"), Answer::Refused(_)));
+        assert!(matches!(answer("echo too many; exit 2"), Answer::Limit(_)));
         assert!(matches!(answer("exit 0"), Answer::Refused(_)), "no file is no mesh");
         assert!(matches!(answer("echo junk > {out}"), Answer::Unreadable(_)));
         assert!(matches!(answer("kill -SEGV $$"), Answer::Crash(_)));
