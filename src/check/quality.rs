@@ -28,7 +28,7 @@ pub struct Worst {
 pub struct Histogram {
     /// Bounds between the intervals, rising.
     pub bounds: Vec<f64>,
-    /// One more than bounds: interval i holds the values in [bounds[i - 1], bounds[i]).
+    /// One more than bounds: interval i holds the values from `bounds[i - 1]` to below `bounds[i]`.
     pub counts: Vec<u64>,
 }
 
