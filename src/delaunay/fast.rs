@@ -26,13 +26,13 @@ const PARALLEL_MIN: usize = 1 << 14;
 /// Triangulates finite points; equal ones are merged.
 pub(crate) fn triangulate(points: &[Point2], parallel: bool) -> Delaunay {
     let Sorted { points, index, repeated, lattice } = morton_sort(points);
-    let mut triangulation = Triangulation::unfinished(2 * points.len());
+    let mut triangulation = Triangulation::unfinished(index);
     if points.len() > 1 {
         let job = Job { points: &points, lattice, parallel };
         job.build(&mut triangulation.arena(), 0, points.len());
     }
     drop(points);
-    triangulation.finish(&index);
+    triangulation.finish();
     Delaunay { triangulation, repeated }
 }
 

@@ -54,9 +54,7 @@ pub fn split_crossings(points: &[Point2], segments: &[[u32; 2]]) -> Result<Split
         todo: pieces.rev().collect(),
         done: BTreeMap::new(),
     };
-    // n segments may cross n^2 times; beyond that only rounding makes crossings.
-    let limit = segments.len().saturating_mul(segments.len() + 64).saturating_add(points.len());
-    for _ in 0..limit.saturating_mul(8) {
+    for _ in 0..steps_max(points.len(), segments.len()) {
         let Some(piece) = splitter.todo.pop() else { return Ok(splitter.finish()) };
         splitter.force(piece);
     }
@@ -64,6 +62,14 @@ pub fn split_crossings(points: &[Point2], segments: &[[u32; 2]]) -> Result<Split
         Some(piece) => Err(CdtError::Tangled { segment: piece.parent }),
         None => Ok(splitter.finish()),
     }
+}
+
+/// n segments may cross n^2 times, and a crossing makes four pieces; beyond that only rounding makes
+/// crossings. The cap keeps hopeless input from running for hours.
+fn steps_max(points: usize, segments: usize) -> usize {
+    const CAP: usize = 1 << 26;
+    let crossings = segments.saturating_mul(segments.saturating_add(64));
+    crossings.saturating_add(points).saturating_mul(8).min(CAP)
 }
 
 #[derive(Clone, Copy)]

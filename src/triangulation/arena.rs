@@ -3,7 +3,9 @@
 //! An arena is a range of the slots; disjoint ranges can be handed to different threads. Slot
 //! indices are those of the whole. Triangles are written in full, and linked by raw half-edges.
 
-use super::{ACROSS, FLAGS, HalfEdgeId, LIVE, Slot, TriangleId, Triangulation, VertexId};
+use super::{
+    ACROSS, FLAGS, GHOST, HalfEdgeId, LIVE, MARK, Slot, TriangleId, Triangulation, VertexId,
+};
 
 /// A range of slots.
 pub(crate) struct Arena<'a> {
@@ -13,10 +15,14 @@ pub(crate) struct Arena<'a> {
 }
 
 impl Triangulation {
-    /// `count` slots, none live, to be filled through an [`Arena`] and then
-    /// [finished](Self::finish).
-    pub(crate) fn unfinished(count: usize) -> Self {
-        Self { slots: vec![Slot::FREE; count], free: Vec::new() }
+    /// Two slots for each of the names, none live, to be filled through an [`Arena`] and then
+    /// [finished](Self::finish). The names wait in the scratch words, so that they cost nothing.
+    pub(crate) fn unfinished(names: Vec<u32>) -> Self {
+        let mut slots = vec![Slot::FREE; 2 * names.len()];
+        for (slot, name) in slots.iter_mut().step_by(2).zip(names) {
+            slot.words[MARK] = name;
+        }
+        Self { slots, free: Vec::new() }
     }
 
     /// All slots as an arena.
@@ -24,11 +30,24 @@ impl Triangulation {
         Arena { slots: &mut self.slots, base: 0 }
     }
 
-    /// Lists the slots that were not used, and renames the vertices.
-    pub(crate) fn finish(&mut self, names: &[u32]) {
-        let unused = self.slots.iter().zip(0..).filter(|(slot, _)| slot.words[FLAGS] & LIVE == 0);
-        self.free = unused.map(|(_, i)| i).collect();
-        self.rename(names);
+    /// Replaces each vertex by its name, and lists the slots that were not used.
+    pub(crate) fn finish(&mut self) {
+        for i in 0..self.slots.len() {
+            let mut words = self.slots[i].words;
+            for word in &mut words[..3] {
+                if *word != GHOST.0 {
+                    *word = self.slots[2 * *word as usize].words[MARK];
+                }
+            }
+            [self.slots[i].words[0], self.slots[i].words[1], self.slots[i].words[2]] =
+                [words[0], words[1], words[2]];
+            if words[FLAGS] & LIVE == 0 {
+                self.free.push(i as u32);
+            }
+        }
+        for slot in self.slots.iter_mut().step_by(2) {
+            slot.words[MARK] = 0;
+        }
     }
 
     /// Replaces each vertex `v` by `names[v]`; ghosts stay.
