@@ -58,7 +58,8 @@ fn benchmark(c: &mut Criterion) {
         assert!(check(mesh, None, &exact_only).passed());
         group.throughput(Throughput::Elements(mesh.triangles.len() as u64));
         for threads in [1, 2] {
-            for (what, options) in [("exact", exact_only.clone()), ("quality", CheckOptions::new())] {
+            for (what, options) in [("exact", exact_only.clone()), ("quality", CheckOptions::new())]
+            {
                 let options = options.threads(threads);
                 let id = BenchmarkId::new(format!("{name}/{what}"), threads);
                 group.bench_function(id, |b| b.iter(|| check(black_box(mesh), None, &options)));

@@ -189,7 +189,7 @@ fn mutate(random: &mut Random, mesh: &mut MeshData, corners: u32) -> (&'static s
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    // spec: C5
+    // spec: C3 C5
     #[test]
     fn valid_meshes_pass(seed: u64, corners in 3u32..12, steps in 0usize..60) {
         let mesh = valid_mesh(&mut Random(seed), corners, steps);

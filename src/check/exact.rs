@@ -224,20 +224,11 @@ pub fn orient3d_narrow(axes: [[i64; 4]; 3]) -> Ordering {
     let [x, y, z] =
         axes.map(|[a, b, c, d]| [i128::from(b - a), i128::from(c - a), i128::from(d - a)]);
     let minor = |p: [i128; 3], q: [i128; 3]| p[0] * q[1] - p[1] * q[0];
-    // Minors stay below 2^125, differences below 2^62: each minor is split at 2^64 and the halves'
-    // products, below 2^123 and 2^126, are summed on their own.
-    let mut high = 0i128;
-    let mut low = 0i128;
-    for (minor, difference) in [(minor(y, z), x[2]), (minor(z, x), y[2]), (minor(x, y), z[2])] {
-        let product = (minor & LOW_HALF) * difference;
-        high += (minor >> 64) * difference + (product >> 64);
-        low += product & LOW_HALF;
-    }
-    (high + (low >> 64)).cmp(&0).then((low & LOW_HALF).cmp(&0))
+    let sum = Int256::product(minor(y, z), x[2])
+        .plus(Int256::product(minor(z, x), y[2]))
+        .plus(Int256::product(minor(x, y), z[2]));
+    sum.sign()
 }
-
-/// The lower 64 bits of a 128-bit integer.
-const LOW_HALF: i128 = u64::MAX as i128;
 
 fn orient3d_wide(axes: &[[Wide; 4]; 3]) -> Ordering {
     let [x, y, z] = [0, 1, 2].map(|k| [1, 2, 3].map(|i: usize| axes[k][i].minus(&axes[k][0])));

@@ -1,21 +1,18 @@
-//! The coordinates of a whole mesh as 64-bit integers.
+//! The coordinates of a whole mesh as 64-bit integers, where they fit.
 //!
-//! Along each axis the unit is the power of two that spreads the mesh over 62 bits, and integers are
-//! counted from the middle of the range, so differences fit 63 bits and orient2d 125. A point that
-//! is no multiple of the unit (noise of 1e-17 beside 1, say) is off the lattice: triangles that use
-//! it are decided on their own, with whatever width they need.
+//! Along each axis the coordinates are divided by their smallest common power of two and shifted to
+//! the middle of their range. They fit when they then stay below 2^62: differences fit 63 bits and
+//! the orientation determinant 127. Most meshes fit; the others are decided triangle by triangle.
 
-use super::exact::{self, P2, P3, Scaled, mantissa_exponent};
+use super::exact::{self, P2, Scaled, mantissa_exponent};
+use super::wide::Int256;
 use crate::mesh::MeshData;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Bits over which the larger side of a mesh is spread along an axis.
-const RANGE_BITS: i32 = 62;
-/// Bits of the integers before the middle is subtracted; those must fit an i128.
-const WIDE_BITS: u32 = 120;
-/// The first coordinate of a point off the lattice.
-const OFF: i64 = i64::MIN;
+/// Widest range of 64-bit integers along an axis: differences must fit an i64 with room for its sign.
+const RANGE_MAX: i128 = (1 << 63) - 2;
+
 /// Points per piece of parallel work; fixed, so that the result cannot depend on threads.
 const CHUNK: usize = 1 << 14;
 
@@ -26,65 +23,85 @@ struct Axis {
     middle: i128,
 }
 
-/// The smallest and the largest finite coordinate along an axis.
+/// What must be known of an axis before it can be scaled.
 #[derive(Clone, Copy)]
 struct Extent {
+    exponent: i32,
     low: f64,
     high: f64,
 }
 
 impl Extent {
-    const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+    const EMPTY: Self = Self { exponent: i32::MAX, low: f64::INFINITY, high: f64::NEG_INFINITY };
 
     fn with(self, x: f64) -> Self {
-        if x.is_finite() { self.and(Self { low: x, high: x }) } else { self }
+        if !x.is_finite() {
+            return self;
+        }
+        Self {
+            exponent: self.exponent.min(mantissa_exponent(x).1),
+            low: self.low.min(x),
+            high: self.high.max(x),
+        }
     }
 
     fn and(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+        Self {
+            exponent: self.exponent.min(other.exponent),
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
     }
 
-    /// The axis that spreads the extent over at most [`RANGE_BITS`].
-    fn axis(self) -> Axis {
-        let largest = self.low.abs().max(self.high.abs());
-        if self.low > self.high || largest == 0.0 {
-            return Axis { exponent: 0, middle: 0 };
+    /// The axis, if its integers have at most 120 bits; and their range.
+    fn axis(self) -> Option<(Axis, i128)> {
+        if self.low > self.high || self.exponent == i32::MAX {
+            return Some((Axis { exponent: 0, middle: 0 }, 0));
         }
-        // Half of a difference cannot overflow; its exponent is one below that of the whole, and
-        // rounding may have raised the whole to the next power of two, never lowered it below one.
-        let half = self.high / 2.0 - self.low / 2.0;
-        let whole = if half > 0.0 { libm::ilogb(half) + 2 } else { -1074 };
-        // The extent's ends must not need more than WIDE_BITS either.
-        let coarsest = libm::ilogb(largest) + 1 - WIDE_BITS.cast_signed();
-        let exponent = (whole - RANGE_BITS).max(coarsest);
-        // Floor division: the middle need not be a coordinate.
-        let floor = |x: f64| {
-            let (m, e) = mantissa_exponent(x);
-            match e.saturating_sub(exponent) {
-                _ if m == 0 => 0,
-                up @ 0.. => i128::from(m) << up,
-                down => i128::from(m) >> down.unsigned_abs().min(127),
-            }
-        };
-        Axis { exponent, middle: floor(self.low).midpoint(floor(self.high)) }
+        let (low, high) = (integer(self.low, self.exponent)?, integer(self.high, self.exponent)?);
+        Some((Axis { exponent: self.exponent, middle: low.midpoint(high) }, high - low))
     }
 }
 
-impl Axis {
-    /// The integer of a coordinate, if it is a multiple of the unit.
-    #[inline]
-    fn integer(self, x: f64) -> Option<i64> {
-        let (m, e) = if x.is_finite() { mantissa_exponent(x) } else { return None };
-        if m == 0 {
-            return i64::try_from(-self.middle).ok();
-        }
-        let shift = u32::try_from(e.checked_sub(self.exponent)?).ok()?;
-        let bits = 64 - m.unsigned_abs().leading_zeros();
-        if bits.saturating_add(shift) > WIDE_BITS {
-            return None;
-        }
-        i64::try_from((i128::from(m) << shift) - self.middle).ok()
+/// `x / 2^exponent` if it has at most 120 bits; `exponent` is not above that of x.
+fn integer(x: f64, exponent: i32) -> Option<i128> {
+    let (m, e) = mantissa_exponent(x);
+    if m == 0 {
+        return Some(0);
     }
+    let shift = (e - exponent).cast_unsigned();
+    let bits = 64 - m.unsigned_abs().leading_zeros();
+    (bits.saturating_add(shift) <= 120).then(|| i128::from(m) << shift)
+}
+
+impl Axis {
+    fn scaled(self, x: f64) -> i128 {
+        let value = if x.is_finite() { integer(x, self.exponent) } else { None };
+        value.unwrap_or(self.middle) - self.middle
+    }
+}
+
+/// The axes on which all finite coordinates are integers of at most 120 bits, and the largest range.
+fn axes<const D: usize>(points: &[[f64; 3]]) -> Option<([Axis; D], i128)> {
+    let extents = |chunk: &[[f64; 3]]| {
+        let mut extents = [Extent::EMPTY; D];
+        for point in chunk {
+            for (extent, &x) in extents.iter_mut().zip(point) {
+                *extent = extent.with(x);
+            }
+        }
+        extents
+    };
+    let join = |a: [Extent; D], b: [Extent; D]| std::array::from_fn(|k| a[k].and(b[k]));
+    let extents = points.par_chunks(CHUNK).map(extents).reduce(|| [Extent::EMPTY; D], join);
+    let mut axes = [Axis { exponent: 0, middle: 0 }; D];
+    let mut range = 0;
+    for (axis, extent) in axes.iter_mut().zip(extents) {
+        let (found, width) = extent.axis()?;
+        *axis = found;
+        range = range.max(width);
+    }
+    Some((axes, range))
 }
 
 /// Points on an integer lattice, `D` axes.
@@ -94,53 +111,66 @@ pub(super) struct Lattice<const D: usize> {
 }
 
 impl<const D: usize> Lattice<D> {
-    /// The lattice of the finite points of a mesh.
-    pub(super) fn of(points: &[P3]) -> Self {
-        let extents = |chunk: &[P3]| {
-            let mut extents = [Extent::EMPTY; D];
-            for point in chunk {
-                for (extent, &x) in extents.iter_mut().zip(point) {
-                    *extent = extent.with(x);
-                }
-            }
-            extents
+    /// The lattice of the finite points of a mesh; `None` when it needs more than 64 bits. Points
+    /// that are not finite stand at the middle: no triangle uses them any more.
+    pub(super) fn of(points: &[[f64; 3]]) -> Option<Self> {
+        let (axes, range) = axes::<D>(points)?;
+        if range > RANGE_MAX {
+            return None;
+        }
+        let place = |point: &[f64; 3]| {
+            std::array::from_fn(|k| i64::try_from(axes[k].scaled(point[k])).unwrap_or(0))
         };
-        let join = |a: [Extent; D], b: [Extent; D]| std::array::from_fn(|k| a[k].and(b[k]));
-        let axes = points
-            .par_chunks(CHUNK)
-            .map(extents)
-            .reduce(|| [Extent::EMPTY; D], join)
-            .map(Extent::axis);
-        let place = |point: &P3| {
-            let mut integers = [0; D];
-            for k in 0..D {
-                match axes[k].integer(point[k]) {
-                    Some(integer) => integers[k] = integer,
-                    None => return [OFF; D],
-                }
-            }
-            integers
-        };
-        Self { axes, points: points.par_iter().with_min_len(CHUNK).map(place).collect() }
+        Some(Self { axes, points: points.par_iter().with_min_len(CHUNK).map(place).collect() })
     }
 
-    /// The integers of some points, if all are on the lattice.
-    #[inline]
-    pub(super) fn points<const N: usize>(&self, indices: [u32; N]) -> Option<[[i64; D]; N]> {
-        let points = indices.map(|v| self.points[v as usize]);
-        points.iter().all(|p| p[0] != OFF).then_some(points)
+    pub(super) fn point(&self, index: u32) -> [i64; D] {
+        self.points[index as usize]
+    }
+}
+
+/// Points of the plane on a lattice of 120 bits: for meshes whose smallest and largest coordinates
+/// are too far apart for 64 bits, as noise of 1e-17 beside 1 is. Differences within a triangle
+/// mostly fit 64 bits all the same.
+struct FineLattice {
+    exponent: i32,
+    points: Vec<[i128; 2]>,
+}
+
+impl FineLattice {
+    fn of(points: &[[f64; 3]]) -> Option<Self> {
+        let (axes, _) = axes::<2>(points)?;
+        let place = |point: &[f64; 3]| [axes[0].scaled(point[0]), axes[1].scaled(point[1])];
+        let points = points.par_iter().with_min_len(CHUNK).map(place).collect();
+        Some(Self { exponent: axes[0].exponent + axes[1].exponent, points })
+    }
+
+    fn doubled_area(&self, triangle: [u32; 3]) -> Scaled {
+        let [a, b, c] = triangle.map(|v| self.points[v as usize]);
+        let differences = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
+        let narrow = |d: i128| i64::try_from(d).is_ok_and(|d| d.unsigned_abs() < 1 << 63);
+        let [bx, by, cx, cy] = differences;
+        if differences.iter().all(|&d| narrow(d)) {
+            return Scaled::Narrow(bx * cy - by * cx, self.exponent);
+        }
+        let value = Int256::product(bx, cy).minus(Int256::product(by, cx));
+        Scaled::Wide(value.widen(), self.exponent)
     }
 }
 
 /// Coordinates of a plane mesh, and the exact predicates on its points by index.
 pub(super) struct Plane<'a> {
     pub(super) mesh: &'a MeshData,
-    lattice: Lattice<2>,
+    lattice: Option<Lattice<2>>,
+    /// Built only where the other lattice is too narrow.
+    fine: Option<FineLattice>,
 }
 
 impl<'a> Plane<'a> {
     pub(super) fn new(mesh: &'a MeshData) -> Self {
-        Self { mesh, lattice: Lattice::of(&mesh.points) }
+        let lattice = Lattice::of(&mesh.points);
+        let fine = if lattice.is_some() { None } else { FineLattice::of(&mesh.points) };
+        Self { mesh, lattice, fine }
     }
 
     /// The coordinates of a point.
@@ -152,10 +182,14 @@ impl<'a> Plane<'a> {
     /// Twice the signed area of a triangle, exactly.
     #[inline]
     pub(super) fn doubled_area(&self, triangle: [u32; 3]) -> Scaled {
-        if let Some([a, b, c]) = self.lattice.points(triangle) {
-            let exponent = self.lattice.axes[0].exponent + self.lattice.axes[1].exponent;
+        if let Some(lattice) = &self.lattice {
+            let exponent = lattice.axes[0].exponent + lattice.axes[1].exponent;
+            let [a, b, c] = triangle.map(|v| lattice.point(v));
             let value = exact::determinant([a[0], b[0], c[0]], [a[1], b[1], c[1]]);
             return Scaled::Narrow(value, exponent);
+        }
+        if let Some(fine) = &self.fine {
+            return fine.doubled_area(triangle);
         }
         let [a, b, c] = triangle.map(|v| self.point(v));
         exact::doubled_area(a, b, c)
@@ -172,28 +206,18 @@ impl<'a> Plane<'a> {
 mod tests {
     use super::*;
 
-    fn plane_of(points: &[P2]) -> MeshData {
-        let points = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-        MeshData { points, ..MeshData::default() }
-    }
-
-    /// On the lattice or off it, areas are those of the predicates on coordinates.
+    /// Whatever lattice carries the points, areas are those of the predicates on coordinates.
     #[test]
-    fn areas_are_the_same_on_and_off_the_lattice() {
-        for (small, off) in
-            [(0.5, 0), (1e-17, 2), (1e-300, 2), (5e-324, 2), (1e300, 3), (f64::MAX, 3)]
+    fn every_lattice_gives_the_same_areas() {
+        let corner = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0 + f64::EPSILON]];
+        for (smallest, rungs) in
+            [(0.5, (true, false)), (1e-17, (false, true)), (1e-300, (false, false))]
         {
-            let mesh = plane_of(&[
-                [0.0, 0.0],
-                [1.0, 0.0],
-                [0.0, 1.0],
-                [1.0, 1.0 + f64::EPSILON],
-                [small, small / 2.0],
-                [-small, small],
-            ]);
+            let mut points: Vec<[f64; 3]> = corner.map(|[x, y]| [x, y, 0.0]).to_vec();
+            points.extend([[smallest, smallest * 3.0, 0.0], [-smallest, smallest * 7.0, 0.0]]);
+            let mesh = MeshData { points, ..MeshData::default() };
             let plane = Plane::new(&mesh);
-            let count = (0..6).filter(|&v| plane.lattice.points([v]).is_none()).count();
-            assert_eq!(count, off, "{small}");
+            assert_eq!((plane.lattice.is_some(), plane.fine.is_some()), rungs, "{smallest}");
             for a in 0..6 {
                 for b in 0..6 {
                     for c in 0..6 {
@@ -209,19 +233,10 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_far_from_the_origin_is_on_its_lattice() {
-        let x = 1e9f64;
-        let mesh = plane_of(&[[x, x], [x.next_up(), x], [x, x.next_up()], [x + 1.0, x - 1.0]]);
-        let plane = Plane::new(&mesh);
-        assert!(plane.lattice.points([0, 1, 2, 3]).is_some());
-        assert!(plane.doubled_area([0, 1, 2]).sign().is_gt());
-    }
-
-    #[test]
-    fn points_that_are_not_finite_are_off_the_lattice() {
-        let mesh = plane_of(&[[f64::NAN, 0.0], [0.0, f64::INFINITY], [3.0, 4.0]]);
-        let plane = Plane::new(&mesh);
-        assert!(plane.lattice.points([0]).is_none() && plane.lattice.points([1]).is_none());
-        assert!(plane.lattice.points([2]).is_some());
+    fn the_range_of_a_lattice_is_used_to_the_last_bit() {
+        let widest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [libm::scalbn(1.0, 62), 1.0, 0.0]];
+        assert!(Lattice::<2>::of(&widest).is_some());
+        let wider = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [libm::scalbn(1.0, 63), 1.0, 0.0]];
+        assert!(Lattice::<2>::of(&wider).is_none());
     }
 }

@@ -53,8 +53,9 @@ pub fn predict(
         count += 1.0;
         stack.push((triangle.map(|at| Corner { at, spacing: field(t, at) }), 0));
         while let Some((piece, depth)) = stack.pop() {
-            let triangles = triangles_in(&piece);
-            if depth < DEPTH_MIN || (depth < DEPTH_MAX && !is_fine(&piece, triangles)) {
+            let centre = field(t, centroid(&piece));
+            let triangles = triangles_in(&piece, centre);
+            if depth < DEPTH_MIN || (depth < DEPTH_MAX && !is_fine(&piece, centre, triangles)) {
                 let (left, right) = halves(piece, |p| field(t, p));
                 stack.extend([(right, depth + 1), (left, depth + 1)]);
                 continue;
@@ -68,15 +69,26 @@ pub fn predict(
     Prediction { triangles: f64::max(sum, count), stopped: false }
 }
 
-/// Triangles in a piece, by the mean of 1 / h^2 at its corners.
-fn triangles_in(piece: &[Corner; 3]) -> f64 {
-    let mean = piece.iter().map(|c| c.spacing.powi(-2)).sum::<f64>() / 3.0;
+/// Triangles in a piece, by the mean of 1 / h^2: the centre counts nine times as much as a corner, as
+/// in the quadrature rule of degree two.
+fn triangles_in(piece: &[Corner; 3], centre: f64) -> f64 {
+    let corners = piece.iter().map(|c| c.spacing.powi(-2)).sum::<f64>();
+    let mean = (corners + 9.0 * centre.powi(-2)) / 12.0;
     EXCESS * TRIANGLES_PER_AREA * area(piece.map(|c| c.at)) * mean
 }
 
-fn is_fine(piece: &[Corner; 3], triangles: f64) -> bool {
-    let [h, k, l] = piece.map(|c| c.spacing);
-    triangles < PIECE_MIN || h.max(k).max(l) <= PIECE_RATIO * h.min(k).min(l)
+/// Without the centre, a large piece whose corners all happen to lie beside a fine boundary would
+/// pass for fine.
+fn is_fine(piece: &[Corner; 3], centre: f64, triangles: f64) -> bool {
+    let spacings = piece.map(|c| c.spacing);
+    let low = spacings.into_iter().fold(centre, f64::min);
+    let high = spacings.into_iter().fold(centre, f64::max);
+    triangles < PIECE_MIN || high <= PIECE_RATIO * low
+}
+
+fn centroid(piece: &[Corner; 3]) -> Point2 {
+    let mean = |c: fn(Point2) -> f64| piece.iter().map(|corner| c(corner.at) / 3.0).sum();
+    Point2::new(mean(|p| p.x), mean(|p| p.y))
 }
 
 /// Cuts a triangle through the middle of its longest side.

@@ -9,7 +9,7 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 /// Coordinates of a mesh in space, and the exact predicates on its points by index.
 pub(super) struct Space<'a> {
     mesh: &'a MeshData,
-    lattice: Lattice<3>,
+    lattice: Option<Lattice<3>>,
 }
 
 /// Triangles per piece of parallel work.
@@ -26,21 +26,31 @@ impl<'a> Space<'a> {
 
     /// Which side of the plane through a, b, c the point d lies on.
     fn orient(&self, corners: [u32; 4]) -> Ordering {
-        if let Some([a, b, c, d]) = self.lattice.points(corners) {
-            return exact::orient3d_narrow([0, 1, 2].map(|k| [a[k], b[k], c[k], d[k]]));
+        match &self.lattice {
+            Some(lattice) => {
+                let [a, b, c, d] = corners.map(|v| lattice.point(v));
+                exact::orient3d_narrow([0, 1, 2].map(|k| [a[k], b[k], c[k], d[k]]))
+            }
+            None => {
+                let [a, b, c, d] = corners.map(|v| self.point(v));
+                exact::orient3d(a, b, c, d)
+            }
         }
-        let [a, b, c, d] = corners.map(|v| self.point(v));
-        exact::orient3d(a, b, c, d)
     }
 
     /// The sign of the area of a triangle's projection along an axis.
     fn orient_along(&self, axis: usize, corners: [u32; 3]) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        if let Some([a, b, c]) = self.lattice.points(corners) {
-            return exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]).cmp(&0);
+        match &self.lattice {
+            Some(lattice) => {
+                let [a, b, c] = corners.map(|v| lattice.point(v));
+                exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]).cmp(&0)
+            }
+            None => {
+                let [a, b, c] = corners.map(|v| self.point(v)).map(|p| [p[i], p[j]]);
+                orient2d(a, b, c)
+            }
         }
-        let [a, b, c] = corners.map(|v| self.point(v)).map(|p| [p[i], p[j]]);
-        orient2d(a, b, c)
     }
 
     /// An axis along which the triangle's projection has an area; `None` when it has none itself.
@@ -182,12 +192,9 @@ mod tests {
     /// Whether the triangles 0 1 2 and the given one of these points meet improperly.
     fn meet(points: &[P3], t: [u32; 3]) -> bool {
         let mesh = MeshData { points: points.to_vec(), ..MeshData::default() };
-        // A point far away and one too near zero push others off the lattice.
-        let mut spread = mesh.clone();
-        spread.points.extend([[1e200, -1e200, 1e200], [-1e200, 1e200, -1e200]]);
         let mut answers = Vec::new();
-        for mesh in [&mesh, &spread] {
-            let space = Space::new(mesh);
+        for lattice in [Lattice::of(&mesh.points), None] {
+            let space = Space { mesh: &mesh, lattice };
             for shift in 0..3 {
                 let (mut s, mut u) = ([0, 1, 2], t);
                 s.rotate_left(shift);
