@@ -2,8 +2,11 @@
 
 use super::nesting::{is_inside, levels};
 use super::{BoundaryForm, ExportError};
+use crate::background::Background;
+use crate::domain::validate::validate;
 use crate::domain::{Domain, Inside, Segment};
 use crate::point::Point2;
+use std::collections::BTreeSet;
 
 /// The same domain by Triangle's rule: a hole point inside every loop that the domain does not lie
 /// in.
@@ -15,8 +18,27 @@ pub fn carved(domain: &Domain) -> Result<Domain, ExportError> {
     carved.segments.extend(&domain.segments);
     if let Inside::EvenOdd = domain.inside {
         carved.inside = Inside::Carve(holes(domain)?);
+        if loops_touch(domain) && inside_triangles(domain) != inside_triangles(&carved) {
+            return Err(BoundaryForm::Poly.cannot_say("an outside closed in by touching loops"));
+        }
     }
     Ok(carved)
+}
+
+/// Whether any two loops, or a loop and itself, share a point.
+fn loops_touch(domain: &Domain) -> bool {
+    let Ok(plc) = validate(domain) else { return false };
+    let mut edges = vec![0; plc.points.len()];
+    let ends = plc.segments.iter().filter(|s| s.in_loop).flat_map(|s| s.vertices);
+    ends.for_each(|v| edges[v as usize] += 1);
+    edges.into_iter().any(|count: u32| count > 2)
+}
+
+/// How many triangles of the domain's triangulation lie inside; the same segments give the same
+/// triangulation, so equal counts of nested insides mean the same inside.
+fn inside_triangles(domain: &Domain) -> Option<usize> {
+    let background = Background::new(&validate(domain).ok()?).ok()?;
+    Some(background.triangulation.triangles().filter(|&t| background.is_inside(t)).count())
 }
 
 fn holes(domain: &Domain) -> Result<Vec<Point2>, ExportError> {
@@ -27,7 +49,7 @@ fn holes(domain: &Domain) -> Result<Vec<Point2>, ExportError> {
         let inner: Vec<usize> =
             (0..levels.len()).filter(|&i| levels[i].around == Some(hole)).collect();
         let before = points.len();
-        if inner.is_empty() {
+        if inner.is_empty() && !touches_itself(domain, hole) {
             points.extend(points_in(domain, hole, &[], hole).next());
         } else {
             // Islands that touch may cut the hole in several faces: a point at every corner. More
@@ -41,6 +63,14 @@ fn holes(domain: &Domain) -> Result<Vec<Point2>, ExportError> {
         }
     }
     Ok(points)
+}
+
+/// Whether a loop comes to a point twice: then its inside may be several faces.
+fn touches_itself(domain: &Domain, index: usize) -> bool {
+    let vertices = &domain.loops[index].vertices;
+    let places: BTreeSet<[u64; 2]> =
+        vertices.iter().map(|&v| domain.points[v as usize].key()).collect();
+    places.len() < vertices.len()
 }
 
 /// Points inside a loop and outside the loops directly in it, one near each corner of loop `of`
