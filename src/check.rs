@@ -225,6 +225,7 @@ pub fn check(mesh: &MeshData, domain: Option<&Domain>, options: &CheckOptions) -
 }
 
 /// `x * 2^exponent`, rounded once; any exponent.
+#[inline]
 fn ldexp(x: f64, exponent: i32) -> f64 {
     if (-1000..=1000).contains(&exponent) {
         let bits = (1023 + i64::from(exponent)) << 52;

@@ -255,6 +255,22 @@ pub struct ExactSum {
     pending: u32,
 }
 
+/// The exact sum of at most 2^32 numbers of 128 bits: their halves, summed apart.
+#[derive(Clone, Copy, Default)]
+pub struct Lanes {
+    high: i128,
+    low: u128,
+}
+
+impl Lanes {
+    /// Adds a number.
+    #[inline]
+    pub fn add(&mut self, value: i128) {
+        self.high += value >> 64;
+        self.low += value.cast_unsigned() & u128::from(u64::MAX);
+    }
+}
+
 /// The smallest exponent of a product of two f64: 2 * -1074.
 const SUM_EXPONENT: i32 = -2148;
 /// Digits for 2148 bits below the point, 2 * 1024 + 2 above it, and 62 for four billion summands.
@@ -283,6 +299,12 @@ impl ExactSum {
             index += 1;
         }
         self.settle_later();
+    }
+
+    /// Adds the numbers gathered in units of `2^exponent`.
+    pub fn add_lanes(&mut self, lanes: &Lanes, exponent: i32) {
+        self.add(lanes.low.cast_signed(), exponent);
+        self.add(lanes.high, exponent + 64);
     }
 
     /// Adds an exact number.

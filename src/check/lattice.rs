@@ -1,176 +1,105 @@
 //! The coordinates of a whole mesh as 64-bit integers, where they fit.
 //!
-//! Along each axis the coordinates are divided by their smallest common power of two and shifted to
-//! the middle of their range. They fit when they then stay below 2^62: differences fit 63 bits and
-//! the orientation determinant 127. Most meshes fit; the others are decided triangle by triangle.
+//! One power of two divides all coordinates so that the largest stays below 2^61. Most points of
+//! most meshes are then integers: differences stay below 2^62 and the orientation determinant below
+//! 2^125. A point with bits further down (near the origin of a mesh that is a million times as wide,
+//! or noise of 1e-30 beside 1) is off the lattice, and what touches it is decided from its floats.
 
-use super::exact::{self, P2, Scaled, mantissa_exponent};
-use super::wide::Int256;
+use super::exact::{self, P2, Scaled};
 use crate::mesh::MeshData;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Widest range of 64-bit integers along an axis: differences must fit an i64 with room for its sign.
-const RANGE_MAX: i128 = (1 << 63) - 2;
+/// Bits of the largest integer.
+const BITS: i32 = 61;
 
 /// Points per piece of parallel work; fixed, so that the result cannot depend on threads.
 const CHUNK: usize = 1 << 14;
 
-/// Coordinates along one axis: `integer = x / 2^exponent - middle`.
+/// The first coordinate of a point that is no point of the lattice; integers stay far from it.
+const OFF: i64 = i64::MIN;
+
+/// Multiplication by a power of two, in two exact steps where one factor would overflow.
 #[derive(Clone, Copy)]
-struct Axis {
-    exponent: i32,
-    middle: i128,
-}
+struct Scale([f64; 2]);
 
-/// What must be known of an axis before it can be scaled.
-#[derive(Clone, Copy)]
-struct Extent {
-    exponent: i32,
-    low: f64,
-    high: f64,
-}
-
-impl Extent {
-    const EMPTY: Self = Self { exponent: i32::MAX, low: f64::INFINITY, high: f64::NEG_INFINITY };
-
-    fn with(self, x: f64) -> Self {
-        if !x.is_finite() {
-            return self;
-        }
-        Self {
-            exponent: self.exponent.min(mantissa_exponent(x).1),
-            low: self.low.min(x),
-            high: self.high.max(x),
-        }
+impl Scale {
+    fn new(exponent: i32) -> Self {
+        let half = exponent / 2;
+        Self([half, exponent - half].map(|e| libm::scalbn(1.0, e)))
     }
 
-    fn and(self, other: Self) -> Self {
-        Self {
-            exponent: self.exponent.min(other.exponent),
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-        }
-    }
-
-    /// The axis, if its integers have at most 120 bits; and their range.
-    fn axis(self) -> Option<(Axis, i128)> {
-        if self.low > self.high || self.exponent == i32::MAX {
-            return Some((Axis { exponent: 0, middle: 0 }, 0));
-        }
-        let (low, high) = (integer(self.low, self.exponent)?, integer(self.high, self.exponent)?);
-        Some((Axis { exponent: self.exponent, middle: low.midpoint(high) }, high - low))
+    /// The integer `x` times the scale, or `None` when it is none.
+    fn integer(self, x: f64) -> Option<i64> {
+        // A product with a power of two is exact unless it underflows; one that does is below 1, so
+        // it truncates to 0 and only a zero may do that. Infinities and NaN fail the comparison.
+        let scaled = x * self.0[0] * self.0[1];
+        #[expect(clippy::cast_possible_truncation, reason = "compared right below")]
+        let integer = scaled as i64;
+        let exact = integer as f64 == scaled && (integer != 0 || x == 0.0);
+        exact.then_some(integer)
     }
 }
 
-/// `x / 2^exponent` if it has at most 120 bits; `exponent` is not above that of x.
-fn integer(x: f64, exponent: i32) -> Option<i128> {
-    let (m, e) = mantissa_exponent(x);
-    if m == 0 {
-        return Some(0);
-    }
-    let shift = (e - exponent).cast_unsigned();
-    let bits = 64 - m.unsigned_abs().leading_zeros();
-    (bits.saturating_add(shift) <= 120).then(|| i128::from(m) << shift)
-}
-
-impl Axis {
-    fn scaled(self, x: f64) -> i128 {
-        let value = if x.is_finite() { integer(x, self.exponent) } else { None };
-        value.unwrap_or(self.middle) - self.middle
-    }
-}
-
-/// The axes on which all finite coordinates are integers of at most 120 bits, and the largest range.
-fn axes<const D: usize>(points: &[[f64; 3]]) -> Option<([Axis; D], i128)> {
-    let extents = |chunk: &[[f64; 3]]| {
-        let mut extents = [Extent::EMPTY; D];
+/// The largest magnitude of a finite coordinate among the first `D` axes.
+fn largest<const D: usize>(points: &[[f64; 3]]) -> f64 {
+    let of_chunk = |chunk: &[[f64; 3]]| {
+        let mut most = [0.0f64; D];
         for point in chunk {
-            for (extent, &x) in extents.iter_mut().zip(point) {
-                *extent = extent.with(x);
+            for (most, x) in most.iter_mut().zip(point) {
+                let x = x.abs();
+                if x > *most && x < f64::INFINITY {
+                    *most = x;
+                }
             }
         }
-        extents
+        most.into_iter().fold(0.0, f64::max)
     };
-    let join = |a: [Extent; D], b: [Extent; D]| std::array::from_fn(|k| a[k].and(b[k]));
-    let extents = points.par_chunks(CHUNK).map(extents).reduce(|| [Extent::EMPTY; D], join);
-    let mut axes = [Axis { exponent: 0, middle: 0 }; D];
-    let mut range = 0;
-    for (axis, extent) in axes.iter_mut().zip(extents) {
-        let (found, width) = extent.axis()?;
-        *axis = found;
-        range = range.max(width);
-    }
-    Some((axes, range))
+    points.par_chunks(CHUNK).map(of_chunk).reduce(|| 0.0, f64::max)
 }
 
-/// Points on an integer lattice, `D` axes.
+/// Points on an integer lattice, `D` axes: `integer = x / 2^exponent` on each.
 pub(super) struct Lattice<const D: usize> {
-    axes: [Axis; D],
+    pub(super) exponent: i32,
     points: Vec<[i64; D]>,
 }
 
 impl<const D: usize> Lattice<D> {
-    /// The lattice of the finite points of a mesh; `None` when it needs more than 64 bits. Points
-    /// that are not finite stand at the middle: no triangle uses them any more.
-    pub(super) fn of(points: &[[f64; 3]]) -> Option<Self> {
-        let (axes, range) = axes::<D>(points)?;
-        if range > RANGE_MAX {
-            return None;
-        }
+    /// The lattice of a mesh. O(n), `8 D` bytes a point.
+    pub(super) fn of(points: &[[f64; 3]]) -> Self {
+        let most = largest::<D>(points);
+        let exponent = if most > 0.0 { libm::ilogb(most) + 1 - BITS } else { 0 };
+        // Every float is a multiple of 2^-1074.
+        let exponent = exponent.max(-1074);
+        let scale = Scale::new(-exponent);
         let place = |point: &[f64; 3]| {
-            std::array::from_fn(|k| i64::try_from(axes[k].scaled(point[k])).unwrap_or(0))
+            let integers: [Option<i64>; D] = std::array::from_fn(|k| scale.integer(point[k]));
+            if integers.iter().all(Option::is_some) {
+                integers.map(|i| i.unwrap_or(0))
+            } else {
+                [OFF; D]
+            }
         };
-        Some(Self { axes, points: points.par_iter().with_min_len(CHUNK).map(place).collect() })
+        Self { exponent, points: points.par_iter().with_min_len(CHUNK).map(place).collect() }
     }
 
-    pub(super) fn point(&self, index: u32) -> [i64; D] {
-        self.points[index as usize]
-    }
-}
-
-/// Points of the plane on a lattice of 120 bits: for meshes whose smallest and largest coordinates
-/// are too far apart for 64 bits, as noise of 1e-17 beside 1 is. Differences within a triangle
-/// mostly fit 64 bits all the same.
-struct FineLattice {
-    exponent: i32,
-    points: Vec<[i128; 2]>,
-}
-
-impl FineLattice {
-    fn of(points: &[[f64; 3]]) -> Option<Self> {
-        let (axes, _) = axes::<2>(points)?;
-        let place = |point: &[f64; 3]| [axes[0].scaled(point[0]), axes[1].scaled(point[1])];
-        let points = points.par_iter().with_min_len(CHUNK).map(place).collect();
-        Some(Self { exponent: axes[0].exponent + axes[1].exponent, points })
-    }
-
-    fn doubled_area(&self, triangle: [u32; 3]) -> Scaled {
-        let [a, b, c] = triangle.map(|v| self.points[v as usize]);
-        let differences = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
-        let narrow = |d: i128| i64::try_from(d).is_ok_and(|d| d.unsigned_abs() < 1 << 63);
-        let [bx, by, cx, cy] = differences;
-        if differences.iter().all(|&d| narrow(d)) {
-            return Scaled::Narrow(bx * cy - by * cx, self.exponent);
-        }
-        let value = Int256::product(bx, cy).minus(Int256::product(by, cx));
-        Scaled::Wide(value.widen(), self.exponent)
+    /// The lattice points, if all of them are on the lattice.
+    #[inline]
+    pub(super) fn points<const N: usize>(&self, indices: [u32; N]) -> Option<[[i64; D]; N]> {
+        let found = indices.map(|v| self.points[v as usize]);
+        found.iter().all(|p| p[0] != OFF).then_some(found)
     }
 }
 
 /// Coordinates of a plane mesh, and the exact predicates on its points by index.
 pub(super) struct Plane<'a> {
     pub(super) mesh: &'a MeshData,
-    lattice: Option<Lattice<2>>,
-    /// Built only where the other lattice is too narrow.
-    fine: Option<FineLattice>,
+    lattice: Lattice<2>,
 }
 
 impl<'a> Plane<'a> {
     pub(super) fn new(mesh: &'a MeshData) -> Self {
-        let lattice = Lattice::of(&mesh.points);
-        let fine = if lattice.is_some() { None } else { FineLattice::of(&mesh.points) };
-        Self { mesh, lattice, fine }
+        Self { mesh, lattice: Lattice::of(&mesh.points) }
     }
 
     /// The coordinates of a point.
@@ -179,26 +108,40 @@ impl<'a> Plane<'a> {
         [x, y]
     }
 
+    /// Twice the signed area of a triangle on the lattice in units of its squared spacing, or `None`
+    /// when a corner is off the lattice.
+    #[inline]
+    pub(super) fn lattice_area(&self, triangle: [u32; 3]) -> Option<i128> {
+        let [a, b, c] = self.lattice.points(triangle)?;
+        Some(exact::determinant([a[0], b[0], c[0]], [a[1], b[1], c[1]]))
+    }
+
+    /// The exponent of the unit of [`Plane::lattice_area`].
+    pub(super) fn area_exponent(&self) -> i32 {
+        2 * self.lattice.exponent
+    }
+
     /// Twice the signed area of a triangle, exactly.
     #[inline]
     pub(super) fn doubled_area(&self, triangle: [u32; 3]) -> Scaled {
-        if let Some(lattice) = &self.lattice {
-            let exponent = lattice.axes[0].exponent + lattice.axes[1].exponent;
-            let [a, b, c] = triangle.map(|v| lattice.point(v));
-            let value = exact::determinant([a[0], b[0], c[0]], [a[1], b[1], c[1]]);
-            return Scaled::Narrow(value, exponent);
+        match self.lattice_area(triangle) {
+            Some(value) => Scaled::Narrow(value, self.area_exponent()),
+            None => {
+                let [a, b, c] = triangle.map(|v| self.point(v));
+                exact::doubled_area(a, b, c)
+            }
         }
-        if let Some(fine) = &self.fine {
-            return fine.doubled_area(triangle);
-        }
-        let [a, b, c] = triangle.map(|v| self.point(v));
-        exact::doubled_area(a, b, c)
     }
 
     /// Whether `d` lies inside (`Greater`), on or outside the circle of the counterclockwise a, b, c.
     pub(super) fn incircle(&self, corners: [u32; 4]) -> Ordering {
-        let [a, b, c, d] = corners.map(|v| self.point(v));
-        exact::incircle(a, b, c, d)
+        match self.lattice.points(corners) {
+            Some(points) => exact::incircle_narrow(points.map(|p| p[0]), points.map(|p| p[1])),
+            None => {
+                let [a, b, c, d] = corners.map(|v| self.point(v));
+                exact::incircle(a, b, c, d)
+            }
+        }
     }
 }
 
@@ -206,37 +149,61 @@ impl<'a> Plane<'a> {
 mod tests {
     use super::*;
 
-    /// Whatever lattice carries the points, areas are those of the predicates on coordinates.
+    fn mesh(points: &[[f64; 2]]) -> MeshData {
+        let points = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+        MeshData { points, ..MeshData::default() }
+    }
+
+    /// On the lattice or off it, areas and circles are those of the predicates on coordinates.
     #[test]
-    fn every_lattice_gives_the_same_areas() {
+    fn the_lattice_decides_as_the_floats_do() {
         let corner = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0 + f64::EPSILON]];
-        for (smallest, rungs) in
-            [(0.5, (true, false)), (1e-17, (false, true)), (1e-300, (false, false))]
-        {
-            let mut points: Vec<[f64; 3]> = corner.map(|[x, y]| [x, y, 0.0]).to_vec();
-            points.extend([[smallest, smallest * 3.0, 0.0], [-smallest, smallest * 7.0, 0.0]]);
-            let mesh = MeshData { points, ..MeshData::default() };
+        for (smallest, on) in [(0.5, true), (1e-17, false), (1e-300, false), (5e-324, false)] {
+            let mut points = corner.to_vec();
+            points.extend([[smallest, smallest * 3.0], [-smallest, smallest * 7.0]]);
+            let mesh = mesh(&points);
             let plane = Plane::new(&mesh);
-            assert_eq!((plane.lattice.is_some(), plane.fine.is_some()), rungs, "{smallest}");
-            for a in 0..6 {
-                for b in 0..6 {
-                    for c in 0..6 {
-                        let [p, q, r] = [a, b, c].map(|v| plane.point(v));
-                        let mut difference = exact::ExactSum::default();
-                        difference.add_scaled(&plane.doubled_area([a, b, c]));
-                        difference.add_scaled(&exact::doubled_area(q, p, r));
-                        assert!(difference.value().0.sign().is_eq(), "{a} {b} {c}");
-                    }
+            assert!(plane.lattice.points([0, 1, 2, 3]).is_some());
+            assert_eq!(plane.lattice.points([4]).is_some(), on, "{smallest}");
+            for i in 0..6 * 6 * 6 {
+                let [a, b, c] = [i % 6, i / 6 % 6, i / 36];
+                let [p, q, r] = [a, b, c].map(|v| plane.point(v));
+                let mut difference = exact::ExactSum::default();
+                difference.add_scaled(&plane.doubled_area([a, b, c]));
+                difference.add_scaled(&exact::doubled_area(q, p, r));
+                assert!(difference.value().0.sign().is_eq(), "{a} {b} {c}");
+                for d in 0..6 {
+                    let wanted = exact::incircle(p, q, r, plane.point(d));
+                    assert_eq!(plane.incircle([a, b, c, d]), wanted, "{a} {b} {c} {d}");
                 }
             }
         }
     }
 
     #[test]
-    fn the_range_of_a_lattice_is_used_to_the_last_bit() {
-        let widest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [libm::scalbn(1.0, 62), 1.0, 0.0]];
-        assert!(Lattice::<2>::of(&widest).is_some());
-        let wider = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [libm::scalbn(1.0, 63), 1.0, 0.0]];
-        assert!(Lattice::<2>::of(&wider).is_none());
+    fn the_lattice_is_as_fine_as_its_largest_coordinate_allows() {
+        let on = |x: f64, of: f64| {
+            Lattice::<2>::of(&[[of, of, 0.0], [x, 0.0, 0.0]]).points([1]).is_some()
+        };
+        for of in [1.0, 3.0, -7.5, 1e300, -1.7e308, 1e-300] {
+            let finest = libm::scalbn(1.0, (libm::ilogb(of) + 1 - BITS).max(-1074));
+            assert!(on(finest, of) && on(-finest, of), "{of}");
+            assert!(finest < 1e-320 || !on(finest / 2.0, of), "{of}");
+        }
+        assert!(on(5e-324, 1e-310) && on(5e-324, 5e-324) && on(-0.0, 5e-324));
+        assert!(!on(5e-324, 1.7e308) && !on(f64::NAN, 1.0) && !on(f64::INFINITY, 1.0));
+    }
+
+    #[test]
+    fn the_largest_integers_fit_the_predicates() {
+        let most = 1.0 - f64::EPSILON / 2.0;
+        let points = [[-most, -most], [most, -most], [most, most], [-most, most]];
+        let mesh = mesh(&points);
+        let plane = Plane::new(&mesh);
+        assert!(plane.lattice.points([0, 1, 2, 3]).is_some());
+        assert_eq!(plane.doubled_area([0, 1, 2]).sign(), Ordering::Greater);
+        assert_eq!(plane.incircle([0, 1, 2, 3]), Ordering::Equal);
+        let all = |i: usize| points[i];
+        assert_eq!(exact::incircle(all(0), all(1), all(2), all(3)), Ordering::Equal);
     }
 }

@@ -5,7 +5,7 @@
 //! over: then it runs against them, as neighbours should, but lies on their side of the edge.
 
 use super::edges::{Edges, NONE};
-use super::exact::ExactSum;
+use super::exact::{ExactSum, Lanes};
 use super::id::Id;
 use super::lattice::Plane;
 use super::report::{Collector, Draft, show_triangle, show_vertex};
@@ -89,15 +89,23 @@ pub(super) fn orient(
 pub(super) fn scan(plane: &Plane<'_>, triangles: &[[u32; 3]]) -> Signs {
     let piece = |(chunk, triangles): (usize, &[[u32; 3]])| {
         let mut signs = Signs::default();
+        let mut lanes = Lanes::default();
         for (t, &triangle) in ((chunk * CHUNK) as u32..).zip(triangles) {
-            let doubled = plane.doubled_area(triangle);
-            match doubled.sign() {
+            let sign = if let Some(doubled) = plane.lattice_area(triangle) {
+                lanes.add(doubled);
+                doubled.cmp(&0)
+            } else {
+                let doubled = plane.doubled_area(triangle);
+                signs.doubled_area.add_scaled(&doubled);
+                doubled.sign()
+            };
+            match sign {
                 Ordering::Greater => {}
                 Ordering::Equal => signs.zero.push(t),
                 Ordering::Less => signs.negative.push(t),
             }
-            signs.doubled_area.add_scaled(&doubled);
         }
+        signs.doubled_area.add_lanes(&lanes, plane.area_exponent());
         signs
     };
     let join = |mut a: Signs, b: Signs| {

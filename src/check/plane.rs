@@ -106,7 +106,7 @@ fn check_plane(run: &mut Run<'_>, domain: Option<&Domain>) {
     check_delaunay(run, &covered, region.as_ref());
     parts.describe(&edges, &mut run.statistics);
     describe_area(run, &oriented, &matched, region.as_ref());
-    measure_quality(run, &sound, &edges.twin, &|t| {
+    measure_quality(run, &sound, &edges.twin, |t| {
         let corners = t.map(|v| mesh.points[v as usize]);
         measure(corners, Some(plane.doubled_area(t).approximate()))
     });
@@ -210,7 +210,7 @@ pub(super) fn measure_quality(
     run: &mut Run<'_>,
     sound: &Sound<'_>,
     twin: &[u32],
-    measured: &(dyn Fn([u32; 3]) -> Measured + Sync),
+    measure: impl Fn([u32; 3]) -> Measured + Sync,
 ) {
     let wanted =
         run.options.quality || !run.options.gates.is_empty() || run.options.baseline.is_some();
@@ -218,8 +218,7 @@ pub(super) fn measure_quality(
         return;
     }
     let place = |t: u32| triangle_place(sound.mesh, sound.origin(t));
-    let input =
-        quality::Input { triangles: &sound.triangles, twin, measure: measured, place: &place };
+    let input = quality::Input { triangles: &sound.triangles, twin, measure, place: &place };
     run.quality = Some(quality::assess(&input, &run.options.gates));
 }
 

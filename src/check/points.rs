@@ -17,13 +17,25 @@ fn hash<const D: usize>(key: &[u64; D]) -> u64 {
 /// Longest probe before a table gives up: input chosen to collide must not cost quadratic time.
 const PROBES_MAX: u32 = 256;
 
-const VACANT: u32 = u32::MAX;
+/// Points hashed before they are entered: their slots are read together, so that the memory system
+/// fetches them side by side instead of one after the other.
+const BATCH: usize = 32;
+
+/// A slot holds the upper half of the hash above the index, so that other points are seldom looked
+/// at; this one is free.
+const VACANT: u64 = u64::MAX;
+
+/// The index of the point in a slot.
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is the index")]
+fn index_of(slot: u64) -> u32 {
+    slot as u32
+}
 
 /// Points by coordinates: an open-addressing table of indices, or sorted indices where an
 /// adversary made the table's keys collide.
 pub(super) enum PointIndex<'a, const D: usize> {
-    /// Power-of-two many slots, at most half of them taken.
-    Table(&'a [[f64; D]], Vec<u32>),
+    /// Power-of-two many slots, at most two thirds of them taken.
+    Table(&'a [[f64; D]], Vec<u64>),
     /// Indices sorted by key, then by index.
     Sorted(&'a [[f64; D]], Vec<u32>),
 }
@@ -45,10 +57,12 @@ impl<'a, const D: usize> PointIndex<'a, D> {
         let wanted = key(point);
         match self {
             Self::Table(points, table) => {
-                let mut slot = first_slot(&wanted, table.len());
+                let hash = hash(&wanted);
+                let mut slot = first_slot(hash, table.len());
                 while table[slot] != VACANT {
-                    if key(&points[table[slot] as usize]) == wanted {
-                        return Some(table[slot]);
+                    let other = index_of(table[slot]);
+                    if table[slot] >> 32 == hash >> 32 && key(&points[other as usize]) == wanted {
+                        return Some(other);
                     }
                     slot = (slot + 1) & (table.len() - 1);
                 }
@@ -63,44 +77,59 @@ impl<'a, const D: usize> PointIndex<'a, D> {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "masked to the table's size")]
-fn first_slot<const D: usize>(key: &[u64; D], slots: usize) -> usize {
-    hash(key) as usize & (slots - 1)
+fn first_slot(hash: u64, slots: usize) -> usize {
+    hash as usize & (slots - 1)
 }
 
-type Filled = (Vec<u32>, Vec<(u32, u32)>);
+type Filled = (Vec<u64>, Vec<(u32, u32)>);
 
 fn fill_table<const D: usize>(
     points: &[[f64; D]],
     eligible: &impl Fn(u32) -> bool,
 ) -> Option<Filled> {
-    let slots = (points.len() * 2).next_power_of_two().max(2);
+    let slots = (points.len() + points.len() / 2).next_power_of_two().max(2);
     let mut table = vec![VACANT; slots];
     let mut pairs = Vec::new();
-    for (v, point) in (0u32..).zip(points) {
-        if !eligible(v) {
-            continue;
+    let mut hashes = [0; BATCH];
+    for (batch, coordinates) in (0u32..).zip(points.chunks(BATCH)) {
+        let mut seen = 0;
+        for (slot, point) in hashes.iter_mut().zip(coordinates) {
+            *slot = hash(&key(point));
+            seen ^= table[first_slot(*slot, slots)];
         }
-        let wanted = key(point);
-        let mut slot = first_slot(&wanted, slots);
-        let mut probes = 0;
-        loop {
-            let other = table[slot];
-            if other == VACANT {
-                table[slot] = v;
-                break;
-            }
-            if key(&points[other as usize]) == wanted {
-                pairs.push((other, v));
-                break;
-            }
-            probes += 1;
-            if probes == PROBES_MAX {
+        std::hint::black_box(seen);
+        let first = batch * BATCH as u32;
+        for (v, hash) in (first..).zip(hashes).take(coordinates.len()) {
+            if eligible(v) && !insert(points, (v, hash), &mut table, &mut pairs) {
                 return None;
             }
-            slot = (slot + 1) & (slots - 1);
         }
     }
     Some((table, pairs))
+}
+
+/// Puts a point into the table or, if it is there, notes the pair; `false` after too many probes.
+fn insert<const D: usize>(
+    points: &[[f64; D]],
+    (v, hash): (u32, u64),
+    table: &mut [u64],
+    pairs: &mut Vec<(u32, u32)>,
+) -> bool {
+    let mut slot = first_slot(hash, table.len());
+    for _ in 0..PROBES_MAX {
+        let taken = table[slot];
+        if taken == VACANT {
+            table[slot] = (hash >> 32 << 32) | u64::from(v);
+            return true;
+        }
+        let other = index_of(taken);
+        if taken >> 32 == hash >> 32 && key(&points[other as usize]) == key(&points[v as usize]) {
+            pairs.push((other, v));
+            return true;
+        }
+        slot = (slot + 1) & (table.len() - 1);
+    }
+    false
 }
 
 fn sort_points<const D: usize>(

@@ -3,12 +3,14 @@
 //! Sums are formed in pieces of fixed size that are added in order, counts are integers, and ties
 //! are broken by index, so a report does not depend on the number of threads.
 
+mod lanes;
 pub mod metric;
 mod summary;
 
 use super::edges::NONE;
 use super::gate::Gate;
 use super::report::TrianglePlace;
+use lanes::{Block, WIDTH};
 pub use metric::{Better, Measured, Metric, OWN_METRICS, measure};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -87,10 +89,10 @@ pub(crate) const CHUNK: usize = 1 << 13;
 pub(crate) const COLUMNS: usize = Metric::COUNT - 1;
 
 /// A triangulation to be measured.
-pub(super) struct Input<'a> {
+pub(super) struct Input<'a, M> {
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) twin: &'a [u32],
-    pub(super) measure: &'a (dyn Fn([u32; 3]) -> Measured + Sync),
+    pub(super) measure: M,
     pub(super) place: &'a (dyn Fn(u32) -> TrianglePlace + Sync),
 }
 
@@ -104,7 +106,10 @@ pub(super) struct Measurements {
 /// Measures all triangles.
 ///
 /// O(n); 64 bytes a triangle while it runs.
-pub(super) fn assess(input: &Input<'_>, gates: &[Gate]) -> Measurements {
+pub(super) fn assess<M: Fn([u32; 3]) -> Measured + Sync>(
+    input: &Input<'_, M>,
+    gates: &[Gate],
+) -> Measurements {
     let count = input.triangles.len();
     let pieces = count.div_ceil(CHUNK);
     let mut columns = vec![0f32; pieces * CHUNK * COLUMNS];
@@ -115,7 +120,8 @@ pub(super) fn assess(input: &Input<'_>, gates: &[Gate]) -> Measurements {
         .zip(sizes.par_chunks_mut(CHUNK))
         .enumerate()
         .map(|(piece, ((columns, triangles), sizes))| {
-            finish_tallies(measure_piece(input, triangles, columns, sizes), piece, gates)
+            let values = measure_piece(&input.measure, triangles, columns, sizes);
+            finish_tallies(&values, piece, gates)
         })
         .collect();
     let smallest =
@@ -125,39 +131,62 @@ pub(super) fn assess(input: &Input<'_>, gates: &[Gate]) -> Measurements {
         .enumerate()
         .map(|(piece, columns)| {
             let values = compare_piece(input.twin, &sizes, (piece, smallest), columns);
-            finish_tallies(values, piece, gates)
+            finish_tallies(&values, piece, gates)
         })
         .collect();
     drop(sizes);
-    summary::summarise(input, &columns, [tallies, beside], gates)
+    let place = |t: u32| (input.place)(t);
+    summary::summarise((count, &place), &columns, [tallies, beside], gates)
 }
 
-type Values = Vec<(Metric, Vec<f64>)>;
+/// Values of consecutive metrics, from the given one on.
+struct Values {
+    first: usize,
+    columns: Vec<Vec<f64>>,
+}
 
-fn finish_tallies(values: Values, piece: usize, gates: &[Gate]) -> Vec<Tally> {
+fn finish_tallies(values: &Values, piece: usize, gates: &[Gate]) -> Vec<Tally> {
     let first = (piece * CHUNK) as u32;
-    values.iter().map(|(metric, values)| Tally::of(*metric, values, first, gates)).collect()
+    let metrics = Metric::all().skip(values.first).zip(&values.columns);
+    metrics.map(|(metric, values)| Tally::of(metric, values, first, gates)).collect()
 }
 
 /// The metrics that need no neighbours, and area and perimeter for those that do.
 fn measure_piece(
-    input: &Input<'_>,
+    measure: &impl Fn([u32; 3]) -> Measured,
     triangles: &[[u32; 3]],
     columns: &mut [f32],
     sizes: &mut [[f64; 2]],
 ) -> Values {
-    let mut values: Values =
-        Metric::all().take(OWN_METRICS).map(|m| (m, Vec::with_capacity(triangles.len()))).collect();
-    for (i, &triangle) in triangles.iter().enumerate() {
-        let measured = (input.measure)(triangle);
-        let metrics = measured.metrics();
-        sizes[i] = [metrics[Metric::Area as usize], measured.perimeter()];
-        for (k, &value) in metrics.iter().enumerate() {
-            values[k].1.push(value);
-            columns[k * CHUNK + i] = value as f32;
+    let mut values = vec![vec![0.0; triangles.len()]; OWN_METRICS];
+    let mut block = Block::EMPTY;
+    for (b, triangles) in triangles.chunks(WIDTH).enumerate() {
+        let (from, to) = (b * WIDTH, b * WIDTH + triangles.len());
+        for (i, &triangle) in triangles.iter().enumerate() {
+            let measured = measure(triangle);
+            (0..3).for_each(|k| block.edges[k][i] = measured.edges[k]);
+            block.doubled_area[i] = measured.doubled_area;
+            sizes[from + i] = [measured.area(), measured.perimeter()];
+        }
+        let metrics = block.metrics();
+        for (column, metric) in values.iter_mut().zip(&metrics) {
+            column[from..to].copy_from_slice(&metric[..triangles.len()]);
         }
     }
-    values
+    // Only the area depends on the scale at which a triangle was measured.
+    for (area, size) in values[Metric::Area as usize].iter_mut().zip(&*sizes) {
+        *area = size[0];
+    }
+    copy_columns(&values, columns);
+    Values { first: 0, columns: values }
+}
+
+/// Copies values in single precision, a metric after the other.
+#[expect(clippy::cast_possible_truncation, reason = "columns are in single precision")]
+fn copy_columns(values: &[Vec<f64>], columns: &mut [f32]) {
+    for (column, values) in columns.chunks_mut(CHUNK).zip(values) {
+        column.iter_mut().zip(values).for_each(|(slot, &value)| *slot = value as f32);
+    }
 }
 
 /// The metrics that compare a triangle with others.
@@ -168,30 +197,29 @@ fn compare_piece(
     columns: &mut [f32],
 ) -> Values {
     let first = piece * CHUNK;
-    let range = first..sizes.len().min(first + CHUNK);
-    let mut values: Values =
-        Metric::all().skip(OWN_METRICS).map(|m| (m, Vec::with_capacity(range.len()))).collect();
-    for (i, t) in range.enumerate() {
-        let [area, perimeter] = sizes[t];
-        let mut ratios = [1.0f64; 2];
+    let own = &sizes[first..sizes.len().min(first + CHUNK)];
+    let mut values = vec![vec![0.0; own.len()]; Metric::COUNT - OWN_METRICS];
+    for (i, &size) in own.iter().enumerate() {
+        let t = first + i;
+        let (mut low, mut high) = (size, size);
         for &half_edge in &twin[3 * t..3 * t + 3] {
-            if half_edge != NONE {
-                let other = sizes[(half_edge / 3) as usize];
-                ratios[0] = worse(ratios[0], area, other[0]);
-                ratios[1] = worse(ratios[1], perimeter, other[1]);
+            let other = if half_edge == NONE { size } else { sizes[(half_edge / 3) as usize] };
+            for k in 0..2 {
+                low[k] = if other[k] < low[k] { other[k] } else { low[k] };
+                high[k] = if other[k] > high[k] { other[k] } else { high[k] };
             }
         }
-        values[0].1.push(ratios[0]);
-        values[1].1.push(ratios[1]);
-        values[2].1.push(area / smallest);
-        columns[OWN_METRICS * CHUNK + i] = ratios[0] as f32;
-        columns[(OWN_METRICS + 1) * CHUNK + i] = ratios[1] as f32;
+        values[0][i] = worst_ratio(size[0], low[0], high[0]);
+        values[1][i] = worst_ratio(size[1], low[1], high[1]);
+        values[2][i] = size[0] / smallest;
     }
-    values
+    copy_columns(&values[..2], &mut columns[OWN_METRICS * CHUNK..]);
+    Values { first: OWN_METRICS, columns: values }
 }
 
-/// The larger of a ratio and the ratio of two sizes taken so that it is at least 1; infinite when
-/// one of them is not positive.
-fn worse(ratio: f64, a: f64, b: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { ratio.max(a / b).max(b / a) } else { f64::INFINITY }
+/// The largest ratio, at least 1, of a size with the smallest and the largest around it; infinite
+/// when one of them is not positive.
+fn worst_ratio(size: f64, low: f64, high: f64) -> f64 {
+    let (down, up) = (size / low, high / size);
+    if low > 0.0 { if down > up { down } else { up } } else { f64::INFINITY }
 }

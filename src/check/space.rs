@@ -63,7 +63,7 @@ pub(super) fn check(run: &mut Run<'_>) {
     run.statistics.intersection_tests = Some(tests);
     report_intersections(&sound, &edges, (&pairs, &flat), &mut run.out);
     report_unused(run, &sound, &BTreeSet::new());
-    measure_quality(run, &sound, &edges.twin, &|t| {
+    measure_quality(run, &sound, &edges.twin, |t| {
         measure(t.map(|v| mesh.points[v as usize]), None)
     });
 }

@@ -189,76 +189,44 @@ impl Measured {
     /// Area in the unit of the mesh.
     #[must_use]
     pub fn area(&self) -> f64 {
-        super::super::ldexp(0.5 * self.doubled_area, 2 * self.exponent)
+        self.in_unit(0.5 * self.doubled_area, 2)
     }
 
     /// Perimeter in the unit of the mesh.
     #[must_use]
     pub fn perimeter(&self) -> f64 {
-        super::super::ldexp(self.edges.iter().sum(), self.exponent)
+        self.in_unit(self.edges.iter().sum(), 1)
+    }
+
+    /// A product of `power` lengths in the unit of the mesh.
+    #[inline]
+    fn in_unit(&self, value: f64, power: i32) -> f64 {
+        match self.exponent {
+            0 => value,
+            exponent => super::super::ldexp(value, power * exponent),
+        }
     }
 
     /// The metrics of the triangle alone; infinite where the area is zero and the metric divides by
     /// it.
     #[must_use]
     pub fn metrics(&self) -> [f64; OWN_METRICS] {
-        let sqrt3 = 3f64.sqrt();
-        let [a, b, c] = self.edges;
-        let doubled = self.doubled_area.abs();
-        let perimeter = a + b + c;
-        let (long, short) = (a.max(b).max(c), a.min(b).min(c));
-        let squares = [a * a, b * b, c * c];
-        let (min_angle, max_angle) = angles(squares, doubled);
-        // With D = 2 A: R = abc / (2 D), r = D / P.
-        let two_longest = (a * b).max(b * c).max(c * a);
-        [
-            (a * b / doubled) * (c * perimeter / doubled) / 4.0,
-            long * perimeter / (2.0 * sqrt3 * doubled),
-            long / short,
-            min_angle,
-            max_angle,
-            a * b * c / (2.0 * doubled) / short,
-            2.0 / sqrt3 * self.doubled_area / two_longest,
-            2.0 * sqrt3 * doubled / (squares[0] + squares[1] + squares[2]),
-            ((max_angle - 60.0) / 120.0).max((60.0 - min_angle) / 60.0),
-            self.area(),
-        ]
+        let mut metrics = super::lanes::metrics(self.edges, self.doubled_area);
+        metrics[Metric::Area as usize] = self.area();
+        metrics
     }
 }
 
-/// Smallest and largest angle in degrees: the ones opposite the shortest and the longest edge.
-///
-/// The tangent of the angle between edges of squared lengths p and q opposite one of squared length
-/// o is D / ((p + q - o) / 2), D twice the area.
-fn angles([a, b, c]: [f64; 3], doubled: f64) -> (f64, f64) {
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let middle = a.max(b).min(a.min(b).max(c));
-    let angle = |p: f64, q: f64, o: f64| libm::atan2(doubled, 0.5 * ((p - o) + q)).to_degrees();
-    (angle(high, middle, low), angle(low, middle, high))
-}
-
 /// Measures a triangle given by its corners, and twice its signed area as `f * 2^e`.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn measure(corners: [[f64; 3]; 3], doubled_area: Option<(f64, i32)>) -> Measured {
-    let differences = |[p, q, r]: [[f64; 3]; 3]| {
-        [[p, q], [q, r], [r, p]].map(|[s, t]| [t[0] - s[0], t[1] - s[1], t[2] - s[2]])
-    };
     let mut edges = differences(corners);
-    let largest =
-        |edges: &[[f64; 3]; 3]| edges.iter().flatten().fold(0.0f64, |m, d| m.max(d.abs()));
     let size = largest(&edges);
     let mut exponent = 0;
     // Within these bounds products of four lengths stay finite and normal.
     if !(1e-60..=1e60).contains(&size) && size > 0.0 {
-        let biggest = corners.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
-        exponent = if size > 1.0 { ilogb(biggest) } else { ilogb(size) };
-        let scale = |x: f64| super::super::ldexp(x, -exponent);
-        edges = if size > 1.0 {
-            differences(corners.map(|p| p.map(scale)))
-        } else {
-            edges.map(|d| d.map(scale))
-        };
+        (edges, exponent) = rescaled(corners, edges, size);
     }
     let doubled_area = match doubled_area {
         Some((f, e)) => super::super::ldexp(f, e - 2 * exponent),
@@ -266,6 +234,34 @@ pub fn measure(corners: [[f64; 3]; 3], doubled_area: Option<(f64, i32)>) -> Meas
     };
     let length = |d: [f64; 3]| (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
     Measured { edges: edges.map(length), doubled_area, exponent }
+}
+
+/// The edges as vectors, each from a corner to the next.
+#[inline(always)]
+fn differences([p, q, r]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    [[p, q], [q, r], [r, p]].map(|[s, t]| [t[0] - s[0], t[1] - s[1], t[2] - s[2]])
+}
+
+/// The largest magnitude.
+#[inline(always)]
+fn largest(vectors: &[[f64; 3]; 3]) -> f64 {
+    let larger = |most: f64, d: &f64| if d.abs() > most { d.abs() } else { most };
+    vectors.iter().flatten().fold(0.0, larger)
+}
+
+/// The edges divided by a power of two, and its exponent.
+#[cold]
+fn rescaled(corners: [[f64; 3]; 3], edges: [[f64; 3]; 3], size: f64) -> ([[f64; 3]; 3], i32) {
+    let is_huge = size > 1.0;
+    let exponent = ilogb(if is_huge { largest(&corners) } else { size });
+    let scale = |x: f64| super::super::ldexp(x, -exponent);
+    // Differences of huge coordinates may overflow: those are scaled before they are taken.
+    let edges = if is_huge {
+        differences(corners.map(|p| p.map(scale)))
+    } else {
+        edges.map(|d| d.map(scale))
+    };
+    (edges, exponent)
 }
 
 /// |p x q|.

@@ -1,8 +1,9 @@
 //! Summaries of metrics: tallies of pieces, percentiles, histograms, the worst triangles.
 
 use super::metric::{Better, Metric};
-use super::{CHUNK, COLUMNS, Histogram, Input, Measurements, MetricSummary, Quality, Worst};
+use super::{CHUNK, COLUMNS, Histogram, Measurements, MetricSummary, Quality, Worst};
 use crate::check::gate::Gate;
+use crate::check::report::TrianglePlace;
 use rayon::prelude::*;
 
 /// Triangles named per metric.
@@ -29,15 +30,37 @@ impl Tally {
         if !tally.add_finite(values) {
             values.iter().for_each(|&value| tally.add_any(value));
         }
-        for (t, &value) in (first..).zip(values) {
-            tally.note_worst(value, t);
-        }
+        tally.note_worst_of(values, first);
         for (position, gate) in gates.iter().enumerate().filter(|(_, g)| g.metric == metric) {
             tally
                 .met
                 .push((position, values.iter().filter(|&&v| gate.is_met_by(v)).count() as u64));
         }
         tally
+    }
+
+    /// Notes the worst of consecutive triangles: most values are passed over eight at a time.
+    fn note_worst_of(&mut self, values: &[f64], first: u32) {
+        let sign = match self.metric.better() {
+            Better::Lower => 1.0,
+            Better::Higher | Better::Neither => -1.0,
+        };
+        let bar = |worst: &[(f64, u32)]| {
+            worst.get(WORST - 1).map_or(f64::NEG_INFINITY, |entry| sign * entry.0)
+        };
+        for (lane, values) in values.chunks(8).enumerate() {
+            // Written so that NaN, on either side, passes for worse.
+            let is_passed = |&value: &f64, bar: f64| sign * value <= bar;
+            let current = bar(&self.worst);
+            if values.iter().fold(true, |all, value| all & is_passed(value, current)) {
+                continue;
+            }
+            for (t, value) in (first + 8 * lane as u32..).zip(values) {
+                if !is_passed(value, bar(&self.worst)) {
+                    self.note_worst(*value, t);
+                }
+            }
+        }
     }
 
     /// Adds values in eight lanes, in a fixed order, if all are finite; else adds nothing.
@@ -48,8 +71,8 @@ impl Tally {
         for lane in values.chunks(8) {
             for (k, &value) in lane.iter().enumerate() {
                 sums[k] += value;
-                lows[k] = lows[k].min(value);
-                highs[k] = highs[k].max(value);
+                lows[k] = if value < lows[k] { value } else { lows[k] };
+                highs[k] = if value > highs[k] { value } else { highs[k] };
                 suspicious |= !value.is_finite();
             }
         }
@@ -157,9 +180,12 @@ const AREAS: &[f32] = &[
     16_777_216.0,
 ];
 
+/// Names a triangle.
+type Place<'a> = &'a (dyn Fn(u32) -> TrianglePlace + Sync);
+
 /// Puts the tallies of all pieces together.
 pub(super) fn summarise(
-    input: &Input<'_>,
+    (count, place): (usize, Place<'_>),
     columns: &[f32],
     pieces: [Vec<Vec<Tally>>; 2],
     gates: &[Gate],
@@ -170,25 +196,24 @@ pub(super) fn summarise(
     }
     let mut met = vec![0; gates.len()];
     totals.iter().flat_map(|t| &t.met).for_each(|&(position, count)| met[position] = count);
-    let count = input.triangles.len();
     let smallest = totals[Metric::Area as usize].min;
-    let metrics: Vec<MetricSummary> = totals
-        .par_iter()
-        .map(|total| {
-            let column =
-                if total.metric == Metric::AreaSpread { Metric::Area } else { total.metric };
-            let column = Column { columns, column: column as usize, count };
-            let scale = if total.metric == Metric::AreaSpread { 1.0 / smallest } else { 1.0 };
-            summary(input, total, &column.spread(bounds(total.metric), scale))
+    let mut spreads: Vec<Spread> = (0..COLUMNS)
+        .into_par_iter()
+        .map(|column| {
+            let bounds = bounds(Metric::all().nth(column).unwrap_or(Metric::Area));
+            Column { columns, column, count }.spread(bounds)
         })
         .collect();
+    let areas = Column { columns, column: Metric::Area as usize, count };
+    spreads.push(areas.scaled(&spreads[Metric::Area as usize], smallest));
+    let metrics = totals.iter().zip(&spreads).map(|(total, s)| summary(place, total, s)).collect();
     Measurements { quality: Quality { metrics, triangles: count as u64 }, met }
 }
 
-fn summary(input: &Input<'_>, total: &Tally, spread: &Spread) -> MetricSummary {
+fn summary(place: Place<'_>, total: &Tally, spread: &Spread) -> MetricSummary {
     let some = |value: f64| (total.finite > 0).then_some(value);
     let worst = |&(value, t): &(f64, u32)| Worst {
-        triangle: (input.place)(t),
+        triangle: place(t),
         value: value.is_finite().then_some(value),
     };
     MetricSummary {
@@ -246,44 +271,89 @@ impl Column<'_> {
 
     /// Percentiles by nearest rank and the histogram, by two passes of radix selection over 16 bits
     /// each: exact in single precision, and free of any order of threads.
-    fn spread(&self, bounds: &[f32], scale: f64) -> Spread {
-        let mut coarse = vec![0u32; 1 << 16];
-        for piece in self.pieces() {
-            piece.iter().for_each(|&v| coarse[(ordered(v) >> 16) as usize] += 1);
-        }
+    fn spread(&self, bounds: &[f32]) -> Spread {
+        let coarse = self.count_upper_halves();
         let ranks = [1usize, 50, 99].map(|p| (self.count * p).div_ceil(100).max(1) as u64);
-        let starts = ranks.map(|rank| find_rank(&coarse, rank));
-        let percentiles = starts.map(|(high, rank)| {
-            let value = f64::from(self.select(high, rank)) * scale;
-            value.is_finite().then_some(value)
-        });
-        let counts = if scale == 1.0 {
-            histogram(&coarse, bounds)
-        } else {
-            self.scaled_histogram(bounds, scale)
-        };
-        Spread { percentiles, counts }
+        let percentiles = self
+            .select(ranks.map(|rank| find_rank(&coarse, rank)))
+            .map(|value| value.is_finite().then_some(f64::from(value)));
+        Spread { percentiles, counts: histogram(&coarse, bounds) }
     }
 
-    /// The value of a rank (from 1) among those with the given upper half.
-    fn select(&self, high: u32, rank: u64) -> f32 {
-        let mut fine = vec![0u32; 1 << 16];
+    /// The spread of the values divided by the smallest of them, given that of the values.
+    fn scaled(&self, spread: &Spread, smallest: f64) -> Spread {
+        let scale = 1.0 / smallest;
+        let finite = |value: f64| Some(value * scale).filter(|v| v.is_finite());
+        Spread {
+            percentiles: spread.percentiles.map(|p| p.and_then(finite)),
+            counts: self.scaled_histogram(bounds(Metric::AreaSpread), scale),
+        }
+    }
+
+    /// How many keys have each upper half. Two counters each: good meshes have most of their values
+    /// in a few buckets, and an increment must not wait for the one before it.
+    fn count_upper_halves(&self) -> Vec<u32> {
+        let mut even = vec![0u32; 1 << 16];
+        let mut odd = vec![0u32; 1 << 16];
         for piece in self.pieces() {
-            for key in piece.iter().map(|&v| ordered(v)).filter(|key| key >> 16 == high) {
-                fine[(key & 0xffff) as usize] += 1;
+            let mut pairs = piece.chunks_exact(2);
+            for pair in &mut pairs {
+                even[(ordered(pair[0]) >> 16) as usize] += 1;
+                odd[(ordered(pair[1]) >> 16) as usize] += 1;
+            }
+            pairs.remainder().iter().for_each(|&v| even[(ordered(v) >> 16) as usize] += 1);
+        }
+        even.iter_mut().zip(odd).for_each(|(e, o)| *e += o);
+        even
+    }
+
+    /// The values of three ranks, each given by its upper half and its place (from 1) among the keys
+    /// that have it.
+    fn select(&self, wanted: [(u32, u64); 3]) -> [f32; 3] {
+        let highs = wanted.map(|w| w.0);
+        let mut fine = [(); 3].map(|()| vec![0u32; 1 << 16]);
+        for values in self.pieces().flat_map(|piece| piece.chunks(16)) {
+            let of_none = |&v: &f32| highs.iter().fold(true, |n, &h| n & (ordered(v) >> 16 != h));
+            if values.iter().fold(true, |none, v| none & of_none(v)) {
+                continue;
+            }
+            for key in values.iter().map(|&v| ordered(v)) {
+                for (counts, high) in fine.iter_mut().zip(highs) {
+                    if key >> 16 == high {
+                        counts[(key & 0xffff) as usize] += 1;
+                    }
+                }
             }
         }
-        from_ordered((high << 16) | find_rank(&fine, rank).0)
+        std::array::from_fn(|k| {
+            let (high, rank) = wanted[k];
+            from_ordered((high << 16) | find_rank(&fine[k], rank).0)
+        })
     }
 
+    /// The histogram of the values times a positive scale.
     fn scaled_histogram(&self, bounds: &[f32], scale: f64) -> Vec<u64> {
-        let mut counts = vec![0; bounds.len() + 1];
-        for value in
-            self.pieces().flatten().map(|&v| f64::from(v) * scale).filter(|v| v.is_finite())
-        {
-            counts[bounds.partition_point(|&b| f64::from(b) <= value)] += 1;
-        }
-        counts
+        // Scaling is monotone: a bound on scaled values is one on the values, found by bisection.
+        let reaches = |key: u32, bound: f64| f64::from(from_ordered(key)) * scale >= bound;
+        let cut = |bound: f64| {
+            let (mut below, mut above) = (ordered(f32::NEG_INFINITY), ordered(f32::INFINITY) + 1);
+            while above - below > 1 {
+                let middle = below + (above - below) / 2;
+                *(if reaches(middle, bound) { &mut above } else { &mut below }) = middle;
+            }
+            above
+        };
+        let lowest = ordered(f32::NEG_INFINITY) + 1;
+        let bounds = bounds.iter().map(|&b| cut(f64::from(b)));
+        let cuts = [lowest].into_iter().chain(bounds).chain([cut(f64::INFINITY)]);
+        let at_least: Vec<u64> = cuts.map(|cut| self.count_from(cut)).collect();
+        at_least.windows(2).map(|w| w[0] - w[1]).collect()
+    }
+
+    /// How many keys are at least `cut`.
+    fn count_from(&self, cut: u32) -> u64 {
+        let of = |piece: &[f32]| piece.iter().map(|&v| u32::from(ordered(v) >= cut)).sum::<u32>();
+        self.pieces().map(|piece| u64::from(of(piece))).sum()
     }
 }
 
@@ -339,7 +409,7 @@ mod tests {
         sorted.sort_by(f32::total_cmp);
         let wanted = [1, 50, 99].map(|p| Some(f64::from(sorted[(count * p).div_ceil(100) - 1])));
         let column = Column { columns: &columns, column: 2, count };
-        let spread = column.spread(&[0.0, 512.0, 1024.0], 1.0);
+        let spread = column.spread(&[0.0, 512.0, 1024.0]);
         assert_eq!(spread.percentiles, wanted);
         let below = |b: f32| sorted.partition_point(|&v| v < b) as u64;
         let cuts = [below(0.0), below(512.0), below(1024.0), count as u64];

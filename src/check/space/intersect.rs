@@ -9,7 +9,7 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 /// Coordinates of a mesh in space, and the exact predicates on its points by index.
 pub(super) struct Space<'a> {
     mesh: &'a MeshData,
-    lattice: Option<Lattice<3>>,
+    lattice: Lattice<3>,
 }
 
 /// Triangles per piece of parallel work.
@@ -26,9 +26,8 @@ impl<'a> Space<'a> {
 
     /// Which side of the plane through a, b, c the point d lies on.
     fn orient(&self, corners: [u32; 4]) -> Ordering {
-        match &self.lattice {
-            Some(lattice) => {
-                let [a, b, c, d] = corners.map(|v| lattice.point(v));
+        match self.lattice.points(corners) {
+            Some([a, b, c, d]) => {
                 exact::orient3d_narrow([0, 1, 2].map(|k| [a[k], b[k], c[k], d[k]]))
             }
             None => {
@@ -41,11 +40,8 @@ impl<'a> Space<'a> {
     /// The sign of the area of a triangle's projection along an axis.
     fn orient_along(&self, axis: usize, corners: [u32; 3]) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        match &self.lattice {
-            Some(lattice) => {
-                let [a, b, c] = corners.map(|v| lattice.point(v));
-                exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]).cmp(&0)
-            }
+        match self.lattice.points(corners) {
+            Some([a, b, c]) => exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]).cmp(&0),
             None => {
                 let [a, b, c] = corners.map(|v| self.point(v)).map(|p| [p[i], p[j]]);
                 orient2d(a, b, c)
@@ -193,8 +189,11 @@ mod tests {
     fn meet(points: &[P3], t: [u32; 3]) -> bool {
         let mesh = MeshData { points: points.to_vec(), ..MeshData::default() };
         let mut answers = Vec::new();
-        for lattice in [Lattice::of(&mesh.points), None] {
-            let space = Space { mesh: &mesh, lattice };
+        // Beside a huge point that no triangle uses, none of the others is on the lattice.
+        let mut alone = mesh.clone();
+        alone.points.push([1.5e300; 3]);
+        for mesh in [mesh, alone] {
+            let space = Space::new(&mesh);
             for shift in 0..3 {
                 let (mut s, mut u) = ([0, 1, 2], t);
                 s.rotate_left(shift);
