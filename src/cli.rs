@@ -68,7 +68,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
 fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome, Failure> {
     match verb {
         Verb::Mesh(mesh) => return mesh::run(mesh, console, cleanup),
-        Verb::Check(check) => return check::run(check, cleanup),
+        Verb::Check(check) => return check::run(check, console, cleanup),
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),

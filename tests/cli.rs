@@ -531,6 +531,40 @@ fn convert_keeps_every_bit() {
     assert_exit(&run(&["convert", &off, "-o", &at(&folder, "x.nonsense")]), 2);
 }
 
+/// One square and one triangle beside it.
+const SQUARE_AND_TRIANGLE: &str =
+    "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0.5 0\n4 0 1 2 3\n3 1 4 2\n";
+
+#[test]
+fn quadrilaterals_are_split_on_request_and_said_otherwise() {
+    let (folder, _) = folder();
+    let [off, msh] = ["q.off", "q.msh"].map(|n| at(&folder, n));
+    fs::write(&off, SQUARE_AND_TRIANGLE).expect("writable");
+    let left_out = run(&["check", &off]);
+    assert!(out(&left_out).contains("quad"), "{}", out(&left_out));
+    assert!(out(&left_out).contains("1 triangle"), "{}", out(&left_out));
+    let split = run(&["check", &off, "--split-quads"]);
+    assert_exit(&split, 0);
+    assert!(out(&split).contains("3 triangles"), "{}", out(&split));
+    assert_exit(&run(&["convert", &off, "--split-quads", "-o", &msh]), 0);
+    assert!(out(&run(&["check", &msh])).contains("3 triangles"));
+}
+
+// spec: C60
+#[test]
+fn a_certificate_covers_all_files_of_a_mesh() {
+    let (folder, plate) = folder();
+    let [ele, node, certificate] = ["c.ele", "c.node", "c.json"].map(|n| at(&folder, n));
+    assert_exit(&run(&["mesh", &plate, "-o", &ele, "--certificate", &certificate]), 0);
+    let verify = ["check", &ele, "--domain", &plate, "--verify-certificate", &certificate];
+    assert_exit(&run(&verify), 0);
+    let nodes = fs::read_to_string(&node).expect("there");
+    fs::write(&node, format!("{nodes}# changed\n")).expect("writable");
+    let changed = run(&verify);
+    assert_exit(&changed, 1);
+    assert!(out(&changed).contains("NOT CONFIRMED"), "{}", out(&changed));
+}
+
 #[test]
 fn plot_draws() {
     let (folder, plate) = folder();

@@ -116,6 +116,17 @@ pub struct MeshArguments {
     pub certificate: Option<PathBuf>,
 }
 
+/// How a mesh file is read.
+#[derive(Clone, Debug, Default, Args)]
+pub struct MeshReading {
+    /// Form of the mesh, whatever its extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// Split each quadrilateral into two triangles; without it they are counted and left out.
+    #[arg(long)]
+    pub split_quads: bool,
+}
+
 /// How a domain file is read.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Domain")]
@@ -269,9 +280,9 @@ pub struct CheckArguments {
     /// The mesh; `-` is standard input.
     #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
     pub mesh: PathBuf,
-    /// Form of the mesh, whatever its extension (needed for `-`).
-    #[arg(long, value_name = "FORM")]
-    pub from: Option<String>,
+    /// How the mesh is read.
+    #[command(flatten)]
+    pub reading: MeshReading,
     /// The domain that the mesh must cover, its boundary preserved.
     #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
     pub domain: Option<PathBuf>,
@@ -296,6 +307,9 @@ pub struct CheckArguments {
     /// Check again what a certificate says, on the files given.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub verify_certificate: Option<PathBuf>,
+    /// Say how long reading and checking took.
+    #[arg(long)]
+    pub timings: bool,
 }
 
 /// What is demanded of a mesh beyond conformity.
@@ -382,9 +396,9 @@ pub struct ConvertArguments {
     /// The mesh; `-` is standard input.
     #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
     pub mesh: PathBuf,
-    /// Form of the mesh, whatever its extension (needed for `-`).
-    #[arg(long, value_name = "FORM")]
-    pub from: Option<String>,
+    /// How the mesh is read.
+    #[command(flatten)]
+    pub reading: MeshReading,
     /// Where it goes; the extension names the form, `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,
@@ -399,9 +413,9 @@ pub struct PlotArguments {
     /// The mesh; `-` is standard input.
     #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
     pub mesh: PathBuf,
-    /// Form of the mesh, whatever its extension (needed for `-`).
-    #[arg(long, value_name = "FORM")]
-    pub from: Option<String>,
+    /// How the mesh is read.
+    #[command(flatten)]
+    pub reading: MeshReading,
     /// The picture: .svg, .png or .html (a viewer), `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,

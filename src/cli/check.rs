@@ -1,20 +1,21 @@
 //! `trigrade check`: the verdict on anybody's mesh.
 
 use super::arguments::{CheckArguments, DomainReading};
+use super::console::Console;
 use super::domain_file::load_domain;
 use super::failure::{Diagnostic, EXIT_FINDINGS, Failure};
 use super::forms::{OutputFile, output_files};
 use super::input::{Input, load};
-use super::mesh_file::{Drawing, load_mesh, write};
+use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::verdict;
+use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::{Baseline, CheckOptions, GateError, GateFile, Report, check};
 use crate::domain::Domain;
 use crate::draw;
 use crate::format::MeshView;
-use crate::mesh::MeshData;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -24,28 +25,40 @@ use std::path::{Path, PathBuf};
 /// Exit code 2: a file cannot be read or is malformed, or another cannot be written. An invalid
 /// domain is for `check` itself to judge: it needs no sound domain to see that a mesh does not match
 /// it.
-pub fn run(arguments: &CheckArguments, cleanup: &Cleanup) -> Result<Outcome, Failure> {
+pub fn run(
+    arguments: &CheckArguments,
+    console: &Console,
+    cleanup: &Cleanup,
+) -> Result<Outcome, Failure> {
     let certified = arguments.verify_certificate.as_deref().map(load_certificate).transpose()?;
     let options = match &certified {
         Some(certificate) => certificate.options(),
         None => options(arguments)?,
     };
     let side = SideFiles::prepare(arguments, cleanup)?;
+    let mut watch = Watch::new(console);
+    watch.begin("read");
     let files = Files::load(arguments)?;
-    let report = check(&files.mesh, files.domain(), &options);
+    watch.begin("check");
+    let (mesh, name) = (&files.loaded.mesh, &files.loaded.name);
+    let report = check(mesh, files.domain(), &options);
+    let laps = watch.finish();
     let fresh = files.certificate(&report, &options);
-    let picture = Drawing {
-        highlights: draw::highlights(&report),
-        ..Drawing::of(&files.mesh, files.input.name.clone())
-    };
-    side.write(&report, &fresh, &picture)?;
+    let picture =
+        Drawing { highlights: draw::highlights(&report), ..Drawing::of(mesh, name.clone()) };
+    side.write(&report, fresh.as_ref(), &picture)?;
     let mut outcome = Outcome {
         exit: report.exit_code(),
-        text: verdict::text(&report, &files.input.name),
+        text: verdict::text(&report, name),
         json: verdict::json(&report),
         checked: Some(Box::new(files.checked(report))),
     };
-    if let Some(certified) = certified {
+    if arguments.timings {
+        let laps: Vec<String> =
+            laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
+        outcome.text.push_str(&format!("\n  {:<11}{}", "time", laps.join(", ")));
+    }
+    if let (Some(certified), Some(fresh)) = (certified, fresh) {
         confirm(&certified, &fresh, &mut outcome);
     }
     Ok(outcome)
@@ -95,35 +108,39 @@ fn load_certificate(path: &Path) -> Result<Certificate, Failure> {
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string()).at(path.display())))
 }
 
-/// What is checked, and the bytes it was read from.
+/// What is checked, and the identity of the files if a certificate is about them.
 struct Files {
-    input: Input,
-    mesh: MeshData,
+    loaded: LoadedMesh,
     domain: Option<(Input, Domain)>,
+    hash: Option<FileHash>,
 }
 
 impl Files {
     fn load(arguments: &CheckArguments) -> Result<Self, Failure> {
-        let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
+        let mut loaded = load_mesh(&arguments.mesh, &arguments.reading)?;
+        let certifies = arguments.certificate.is_some() || arguments.verify_certificate.is_some();
+        let hash = certifies.then(|| loaded.hash());
+        loaded.forget_files();
         let reading =
             DomainReading { from: arguments.domain_from.clone(), farfield: arguments.farfield };
         let domain = arguments.domain.as_ref().map(|path| load_domain(path, &reading));
-        Ok(Self { input, mesh, domain: domain.transpose()? })
+        Ok(Self { loaded, domain: domain.transpose()?, hash })
     }
 
     fn domain(&self) -> Option<&Domain> {
         self.domain.as_ref().map(|(_, domain)| domain)
     }
 
-    fn certificate(&self, report: &Report, options: &CheckOptions) -> Certificate {
+    /// The certificate, if one is written or confirmed.
+    fn certificate(&self, report: &Report, options: &CheckOptions) -> Option<Certificate> {
         let hash = |input: &Input| FileHash::of(&input.name, &[&input.bytes]);
         let domain = self.domain.as_ref().map(|(input, _)| hash(input));
-        Certificate::new(report, options, hash(&self.input), domain)
+        Some(Certificate::new(report, options, self.hash.clone()?, domain))
     }
 
     fn checked(&self, report: Report) -> Checked {
         let domain = self.domain.as_ref().map(|(input, _)| input.name.clone());
-        Checked { report, mesh: self.input.name.clone(), domain }
+        Checked { report, mesh: self.loaded.name.clone(), domain }
     }
 }
 
@@ -158,13 +175,13 @@ impl SideFiles {
     fn write(
         mut self,
         report: &Report,
-        certificate: &Certificate,
+        certificate: Option<&Certificate>,
         picture: &Drawing<'_>,
     ) -> Result<(), Failure> {
         for (i, file) in self.pictures.iter().enumerate() {
             write(&mut self.outputs, i, file, MeshView::from(picture.mesh), picture)?;
         }
-        if let Some(index) = self.certificate {
+        if let (Some(index), Some(certificate)) = (self.certificate, certificate) {
             write_json(&mut self.outputs, index, certificate)?;
         }
         if let Some(index) = self.baseline {

@@ -5,7 +5,7 @@ use super::console::Console;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, output_files};
 use super::mesh::count;
-use super::mesh_file::{Drawing, load_mesh, write};
+use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
 use crate::format::MeshView;
@@ -23,14 +23,14 @@ pub fn convert(
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
-    let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
-    refuse_bad_references(&input.name, &mesh)?;
+    let LoadedMesh { name, mesh, .. } = load_mesh(&arguments.mesh, &arguments.reading)?;
+    refuse_bad_references(&name, &mesh)?;
     for other in &mesh.other_cells {
         console.detail(&format!("left out: {} {}", other.count, other.kind));
     }
     let drawing = Drawing::of(&mesh, "");
     write_files(&files, &mesh, &drawing, cleanup)?;
-    Ok(outcome(&input.name, &mesh, &files))
+    Ok(outcome(&name, &mesh, &files))
 }
 
 /// Runs `trigrade plot`.
@@ -43,10 +43,10 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
         let diagnostic = Diagnostic::new("a picture is .svg or .png").at(file.path.display());
         return Err(Failure::cannot_run(diagnostic.help("`trigrade convert` writes meshes")));
     }
-    let (input, mesh) = load_mesh(&arguments.mesh, arguments.from.as_deref())?;
+    let LoadedMesh { name, path, mesh, .. } = load_mesh(&arguments.mesh, &arguments.reading)?;
     let file_name = || {
-        let name = input.path.as_deref().and_then(std::path::Path::file_name);
-        name.map_or_else(|| input.name.clone(), |name| name.to_string_lossy().into_owned())
+        let last = path.as_deref().and_then(std::path::Path::file_name);
+        last.map_or_else(|| name.clone(), |last| last.to_string_lossy().into_owned())
     };
     let title = arguments.title.clone().unwrap_or_else(file_name);
     let drawing = Drawing {
@@ -55,7 +55,7 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
         ..Drawing::of(&mesh, title)
     };
     write_files(&files, &mesh, &drawing, cleanup)?;
-    Ok(outcome(&input.name, &mesh, &files))
+    Ok(outcome(&name, &mesh, &files))
 }
 
 fn write_files(

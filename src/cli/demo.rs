@@ -180,8 +180,8 @@ fn run_case(
     watch.begin("read back");
     let (index, file, _) = &files[0];
     let name = file.path.display().to_string();
-    let data =
-        parse(&outputs.read_back(*index)?, MeshForm::Msh, &[]).map_err(|e| malformed(&name, &e))?;
+    let data = parse(&outputs.read_back(*index)?, MeshForm::Msh, &[], false)
+        .map_err(|e| malformed(&name, &e))?;
     watch.begin("check");
     let report = verdict::check_mesh(&data, Some(domain));
     Ok(Done { case, meshed, data, report, laps: watch.finish() })

@@ -144,7 +144,7 @@ fn read_back(
             None => {
                 let name = file.path.display().to_string();
                 let bytes = outputs.read_back(i)?;
-                let mesh = parse(&bytes, form, &std::mem::take(&mut companions));
+                let mesh = parse(&bytes, form, &std::mem::take(&mut companions), false);
                 meshes.push((name.clone(), mesh.map_err(|e| unreadable(&name, &e))?));
             }
         }
@@ -160,7 +160,7 @@ fn through_off(meshed: &Meshed) -> Result<MeshData, Failure> {
     let options = WriteOptions::default();
     write_mesh(MeshView::from(&meshed.mesh), MeshForm::Off, options, &mut bytes)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
-    parse(&bytes, MeshForm::Off, &[]).map_err(|e| unreadable("a temporary OFF file", &e))
+    parse(&bytes, MeshForm::Off, &[], false).map_err(|e| unreadable("a temporary OFF file", &e))
 }
 
 /// A file that was written and cannot be read back is a fault of this program.
@@ -204,8 +204,12 @@ fn certify(
         let message = "none of the outputs is a mesh that can be read back and certified";
         Failure::cannot_run(Diagnostic::new(message))
     })?;
-    let bytes = outputs.read_back(index)?;
-    let mesh = FileHash::of(name, &[&bytes]);
+    // Companions stand before their main file, in the order in which readers take them.
+    let before = files[..index].iter().rev().take_while(|file| file.companion.is_some()).count();
+    let parts = [index].into_iter().chain(index - before..index).map(|i| outputs.read_back(i));
+    let parts: Vec<Vec<u8>> = parts.collect::<Result<_, _>>()?;
+    let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
+    let mesh = FileHash::of(name, &parts);
     let domain = FileHash::of(&domain.name, &[&domain.bytes]);
     Ok(Certificate::new(report, &CheckOptions::default(), mesh, Some(domain)))
 }

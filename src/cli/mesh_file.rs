@@ -1,9 +1,11 @@
 //! Mesh files: reading with their companions, writing any form, pictures included.
 
+use super::arguments::MeshReading;
 use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
 use super::forms::{OutputFile, OutputForm, mesh_to_read};
-use super::input::{Input, load};
+use super::input::load;
 use super::output::Outputs;
+use crate::check::certificate::FileHash;
 use crate::draw::{self, DrawError, Highlight, Layer, Panel, View, Viewer};
 use crate::format::{
     At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
@@ -11,25 +13,55 @@ use crate::format::{
 };
 use crate::mesh::MeshData;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// A mesh that was read.
+pub struct LoadedMesh {
+    /// The path as the user gave it, or `<stdin>`.
+    pub name: String,
+    /// The path, unless the mesh came from standard input.
+    pub path: Option<PathBuf>,
+    /// The mesh.
+    pub mesh: MeshData,
+    /// The main file and those that belong to it, byte by byte.
+    parts: Vec<Vec<u8>>,
+}
+
+impl LoadedMesh {
+    /// The identity of the files read, all of them; only before [`LoadedMesh::forget_files`].
+    #[must_use]
+    pub fn hash(&self) -> FileHash {
+        let parts: Vec<&[u8]> = self.parts.iter().map(Vec::as_slice).collect();
+        FileHash::of(&self.name, &parts)
+    }
+
+    /// Frees what was read: the text of a mesh is larger than the mesh.
+    pub fn forget_files(&mut self) {
+        self.parts = Vec::new();
+    }
+}
 
 /// Reads a mesh and the files that belong to it.
 ///
 /// # Errors
 /// Exit code 2: the file cannot be read, its form is not told, or it is malformed.
-pub fn load_mesh(path: &Path, said: Option<&str>) -> Result<(Input, MeshData), Failure> {
+pub fn load_mesh(path: &Path, reading: &MeshReading) -> Result<LoadedMesh, Failure> {
+    let said = reading.from.as_deref();
     let main = load(&main_of(path, said))?;
     let form = mesh_to_read(path, said, &main.bytes)?;
     let companions: Vec<(Companion, Vec<u8>)> = match &main.path {
         Some(path) => form.companions().iter().filter_map(|&c| beside(path, c)).collect(),
         None => Vec::new(),
     };
-    let mesh = parse(&main.bytes, form, &companions).map_err(|e| malformed(&main.name, &e))?;
-    Ok((main, mesh))
+    let mesh = parse(&main.bytes, form, &companions, reading.split_quads)
+        .map_err(|e| malformed(&main.name, &e))?;
+    let companions = companions.into_iter().map(|(_, bytes)| bytes);
+    let parts = [main.bytes].into_iter().chain(companions).collect();
+    Ok(LoadedMesh { name: main.name, path: main.path, mesh, parts })
 }
 
 /// `a.node` names the pair whose main file is `a.ele`.
-fn main_of(path: &Path, said: Option<&str>) -> std::path::PathBuf {
+fn main_of(path: &Path, said: Option<&str>) -> PathBuf {
     let is_node = said.is_none() && path.extension().is_some_and(|e| e == "node");
     if is_node { path.with_extension("ele") } else { path.to_owned() }
 }
@@ -51,15 +83,13 @@ pub fn parse(
     bytes: &[u8],
     form: MeshForm,
     companions: &[(Companion, Vec<u8>)],
+    split_quads: bool,
 ) -> Result<MeshData, ReadError> {
     let of = |wanted| {
         companions.iter().find(|(companion, _)| *companion == wanted).map(|(_, b)| b.as_slice())
     };
-    let options = ReadOptions {
-        nodes: of(Companion::Nodes),
-        edges: of(Companion::Edges),
-        ..ReadOptions::default()
-    };
+    let options =
+        ReadOptions { nodes: of(Companion::Nodes), edges: of(Companion::Edges), split_quads };
     read_mesh(bytes, form, &options)
 }
 
