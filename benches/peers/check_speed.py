@@ -56,7 +56,7 @@ def main():
     ours = sys.argv[2] if len(sys.argv) > 2 else str(HERE / "target/release/trigrade")
     with tempfile.TemporaryDirectory() as folder:
         ascii_mesh, binary = f"{folder}/a.vtu", f"{folder}/b.msh"
-        _, said = command(ours, "mesh", domain, "--no-check", "-o", ascii_mesh, "-o", binary)
+        _, said = command(ours, "mesh", domain, "--no-check", "--gradation", "uniform", "-o", ascii_mesh, "-o", binary)
         print(said.strip())
         rows = []
         for name, more in [("trigrade check", []), ("trigrade check, 2 threads", ["--threads", "2"])]:
