@@ -93,7 +93,8 @@ pub struct MeshArguments {
     #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
     #[arg(required_unless_present = "dry_run")]
     pub outputs: Vec<PathBuf>,
-    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    /// Form of the outputs, whatever their extension (needed for `-o -`); `msh-binary` and
+    /// `vtu-compressed` name encodings too.
     #[arg(long, value_name = "FORM")]
     pub form: Option<String>,
     /// How the domain is read.
@@ -402,7 +403,8 @@ pub struct ConvertArguments {
     /// Where it goes; the extension names the form, `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,
-    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    /// Form of the outputs, whatever their extension (needed for `-o -`); `msh-binary` and
+    /// `vtu-compressed` name encodings too.
     #[arg(long, value_name = "FORM")]
     pub form: Option<String>,
 }

@@ -2,7 +2,7 @@
 
 use super::failure::{Diagnostic, Failure};
 use super::input::is_dash;
-use crate::format::{Companion, MeshForm, MshVersion, WriteOptions};
+use crate::format::{Companion, Encoding, MeshForm, MshVersion, WriteOptions};
 use std::path::{Path, PathBuf};
 
 /// A form that `mesh`, `convert` or `plot` can write.
@@ -25,23 +25,27 @@ const MESH_EXTENSIONS: [&str; 14] = [
 ];
 
 impl OutputForm {
-    /// The form called `name`: an extension, or `msh22`, `msh41`.
+    /// The form called `name`: an extension, or `msh22`, `msh41`; with `-binary` or `-compressed`
+    /// after it for those encodings, where the form has them.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let msh = |msh_version| {
-            Self::Mesh(MeshForm::Msh, WriteOptions { msh_version, ..WriteOptions::default() })
+        let name = name.to_ascii_lowercase();
+        let (name, encoding) = match name.rsplit_once('-') {
+            Some((name, "binary")) => (name, Encoding::Binary),
+            Some((name, "compressed")) => (name, Encoding::Compressed),
+            _ => (name.as_str(), Encoding::Ascii),
         };
-        Some(match name.to_ascii_lowercase().as_str() {
-            "svg" => Self::Svg,
-            "png" => Self::Png,
-            "html" => Self::Html,
-            "msh22" => msh(MshVersion::V22),
-            "msh41" => msh(MshVersion::V41),
-            other => {
-                let form = mesh_form_named(other).filter(|form| form.is_written())?;
-                Self::Mesh(form, WriteOptions::default())
-            }
-        })
+        let msh_version = match name {
+            "svg" | "png" | "html" if encoding != Encoding::Ascii => return None,
+            "svg" => return Some(Self::Svg),
+            "png" => return Some(Self::Png),
+            "html" => return Some(Self::Html),
+            "msh22" => MshVersion::V22,
+            _ => MshVersion::V41,
+        };
+        let is_wanted = |form: &MeshForm| form.is_written() && form.has_encoding(encoding);
+        let form = mesh_form_named(name).filter(is_wanted)?;
+        Some(Self::Mesh(form, WriteOptions { encoding, msh_version }))
     }
 
     /// Whether it is a picture.
@@ -143,7 +147,12 @@ fn main_path(path: &Path, form: OutputForm) -> PathBuf {
 }
 
 fn output_form(path: &Path, said: Option<&str>) -> Result<OutputForm, Failure> {
-    let known = || format!("{}, msh22, svg, png", mesh_names(MeshForm::is_written));
+    let known = || {
+        format!(
+            "{}, msh22, svg, png, html; msh-binary, vtu-compressed and the like",
+            mesh_names(MeshForm::is_written)
+        )
+    };
     if let Some(name) = said {
         return OutputForm::named(name).ok_or_else(|| unknown(name, &known()));
     }
@@ -192,6 +201,25 @@ mod tests {
         let file = &files(&["a.msh"], Some("msh22")).expect("known")[0];
         let OutputForm::Mesh(MeshForm::Msh, options) = file.form else { panic!("{file:?}") };
         assert_eq!(options.msh_version, MshVersion::V22);
+    }
+
+    #[test]
+    fn an_encoding_can_be_asked_for() {
+        for (name, encoding) in [
+            ("msh-binary", Encoding::Binary),
+            ("MSH22-Binary", Encoding::Binary),
+            ("stl-binary", Encoding::Binary),
+            ("vtu-compressed", Encoding::Compressed),
+            ("off", Encoding::Ascii),
+        ] {
+            let Some(OutputForm::Mesh(_, options)) = OutputForm::named(name) else {
+                panic!("{name}")
+            };
+            assert_eq!(options.encoding, encoding, "{name}");
+        }
+        for wrong in ["off-binary", "svg-binary", "ply-compressed", "-binary", "msh-ascii"] {
+            assert_eq!(OutputForm::named(wrong), None, "{wrong}");
+        }
     }
 
     #[test]
