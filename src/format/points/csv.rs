@@ -121,6 +121,10 @@ fn point(record: &ByteRecord, columns: [usize; 2], line: u64) -> Result<Point2, 
 
 /// A field as a number, by the rules of all text files.
 fn number(field: &[u8], expected: &str, line: u64) -> Result<f64, ReadError> {
+    if field.is_empty() {
+        let (expected, found) = (expected.to_owned(), "an empty column".to_owned());
+        return Err(fail(line, ReadFault::Malformed { expected, found }));
+    }
     let number = Scanner::new(field).parse_float(field, expected);
     number.map_err(|error| ReadError { at: At::Line(line), ..error })
 }
