@@ -275,11 +275,7 @@ pub fn cdt_with(
 }
 
 /// Forces segment after segment into the Delaunay triangulation.
-fn force_all(
-    points: &[Point2],
-    segments: &[[u32; 2]],
-    options: Options,
-) -> Result<Cdt, CdtError> {
+fn force_all(points: &[Point2], segments: &[[u32; 2]], options: Options) -> Result<Cdt, CdtError> {
     let Delaunay { mut triangulation, repeated } = delaunay(points, options)?;
     if let Some(&[second, first]) = repeated.first() {
         return Err(CdtError::Duplicate { first, second, point: points[first as usize] });

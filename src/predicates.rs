@@ -25,9 +25,7 @@ mod perturbed;
 mod segment;
 mod wide;
 
-pub use circumcentre::{
-    compare_circumcentre, nearer, rounded_bisector, rounded_circumcentre,
-};
+pub use circumcentre::{compare_circumcentre, nearer, rounded_bisector, rounded_circumcentre};
 pub use crossing::{Axis, rounded_crossing};
 pub use ladder::{Rung, incircle, incircle_with_rung, orient2d, orient2d_with_rung};
 #[doc(hidden)]

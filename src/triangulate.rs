@@ -48,9 +48,8 @@ pub struct Triangulated {
     pub repeated: Vec<[u32; 2]>,
     /// How many points are crossings.
     pub crossings: usize,
-    /// What an independent check needs to know: the region to be covered and the segments in it, by
-    /// the mesh's points. `None` if there are no triangles, or if segments that cross bound the
-    /// region.
+    /// What an independent check needs to know: the region to be covered and the segments in it, in
+    /// pieces that do not cross. `None` if there are no triangles.
     pub outline: Option<Domain>,
 }
 
@@ -99,8 +98,7 @@ pub fn triangulate_points(
     points: &[Point2],
     options: Options,
 ) -> Result<Triangulated, TriangulateError> {
-    let engine =
-        crate::delaunay::Options { engine: options.engine, parallel: options.parallel };
+    let engine = crate::delaunay::Options { engine: options.engine, parallel: options.parallel };
     let result = delaunay(points, engine)?;
     let keep = Kept::of(points.len(), result.repeated);
     let triangles = finite_triangles(&result.triangulation, |_| true);
@@ -143,6 +141,9 @@ pub fn triangulate_domain(
     result.map = pieces.kept.map.iter().map(|&v| result.map[v as usize]).collect();
     result.repeated = pieces.kept.repeated;
     result.crossings = pieces.split.points.len() - pieces.distinct;
+    if result.outline.is_none() && !result.mesh.triangles.is_empty() {
+        result.outline = Some(pieces_as_domain(&plc, domain));
+    }
     Ok(result)
 }
 
@@ -248,10 +249,45 @@ impl Pieces {
     }
 }
 
+/// The pieces as a domain of their own. Those that switch inside and outside are an even number at
+/// each vertex, so they are closed walks.
+fn pieces_as_domain(plc: &Plc, given: &Domain) -> Domain {
+    let mut domain = Domain::new(plc.points.clone());
+    (domain.inside, domain.regions) = (given.inside.clone(), given.regions.clone());
+    let by_parity = given.inside == Inside::EvenOdd;
+    let mut at: Vec<Vec<u32>> = vec![Vec::new(); plc.points.len()];
+    for segment in &plc.segments {
+        let PlcSegment { vertices: [a, b], marker, in_loop } = *segment;
+        if by_parity && in_loop {
+            at[a as usize].push(b);
+            at[b as usize].push(a);
+        } else {
+            domain.segments.push(Segment { vertices: [a, b], marker });
+        }
+    }
+    for start in 0..plc.points.len() as u32 {
+        while let Some(mut here) = at[start as usize].pop() {
+            let mut walk = vec![start];
+            let mut before = start;
+            loop {
+                let back = at[here as usize].iter().position(|&v| v == before);
+                at[here as usize].swap_remove(back.expect("a piece has two ends"));
+                if here == start {
+                    break;
+                }
+                walk.push(here);
+                before = here;
+                here = at[here as usize].pop().expect("as many pieces leave as arrive");
+            }
+            domain.loops.push(Loop::new(walk, 0, LoopRole::Any));
+        }
+    }
+    domain
+}
+
 fn constrained(plc: &Plc, options: Options) -> Result<Cdt, TriangulateError> {
     let ends: Vec<[u32; 2]> = plc.segments.iter().map(|s| s.vertices).collect();
-    let engine =
-        crate::delaunay::Options { engine: options.engine, parallel: options.parallel };
+    let engine = crate::delaunay::Options { engine: options.engine, parallel: options.parallel };
     Ok(cdt_with(&plc.points, &ends, engine)?)
 }
 
@@ -334,14 +370,16 @@ fn hull_edges(triangulation: &Triangulation, name: impl Fn(u32) -> u32) -> Vec<M
     let mut next = BTreeMap::new();
     for ghost in triangulation.triangles().filter(|&t| triangulation.is_ghost(t)) {
         let e = triangulation.ghost_edge(ghost);
-        let is_finite = triangulation.twin(e).is_some_and(|f| !triangulation.is_ghost(f.triangle()));
+        let is_finite =
+            triangulation.twin(e).is_some_and(|f| !triangulation.is_ghost(f.triangle()));
         debug_assert!(triangulation.origin(e) != GHOST, "a ghost has one infinite corner");
         if is_finite {
             next.insert(name(triangulation.dest(e).0), name(triangulation.origin(e).0));
         }
     }
     let Some((&first, _)) = next.first_key_value() else { return Vec::new() };
-    let chain = std::iter::successors(Some(first), |v| next.get(v).copied().filter(|&v| v != first));
+    let chain =
+        std::iter::successors(Some(first), |v| next.get(v).copied().filter(|&v| v != first));
     let edge = |v: u32| MarkedEdge { vertices: [v, next[&v]], marker: HULL_MARKER };
     chain.map(edge).collect()
 }

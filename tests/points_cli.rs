@@ -9,7 +9,8 @@ use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// A square of nine points, one of them twice.
-const CLOUD: &str = "x,y,name\n0,0,a\n1,0,b\n2,0,c\n0,1,d\n1,1,e\n2,1,f\n0,2,g\n1,2,h\n2,2,i\n1,1,e again\n";
+const CLOUD: &str =
+    "x,y,name\n0,0,a\n1,0,b\n2,0,c\n0,1,d\n1,1,e\n2,1,f\n0,2,g\n1,2,h\n2,2,i\n1,1,e again\n";
 
 /// A square with a wall that a second one crosses.
 const WALLS: &str = "\
@@ -80,13 +81,16 @@ fn json(folder: &TempDir, name: &str) -> Value {
 #[test]
 fn a_cloud_is_triangulated_checked_and_written_in_every_form() {
     let folder = folder(&[("cloud.csv", CLOUD)]);
-    let outputs = ["a.off", "a.msh", "a.vtu", "a.ele", "a.json", "a.svg", "a.png", "a.ply", "a.stl"];
+    let outputs =
+        ["a.off", "a.msh", "a.vtu", "a.ele", "a.json", "a.svg", "a.png", "a.ply", "a.stl"];
     let mut arguments = vec!["delaunay", "cloud.csv", "--check", "--timings", "--map", "map.json"];
     outputs.iter().for_each(|name| arguments.extend(["-o", name]));
     let output = run(&folder, &arguments);
     assert_exit(&output, 0);
     let text = out(&output);
-    for told in ["10 points", "column `name`", "9 (line 11) repeats 4 (line 6)", "8 triangles", "passed"] {
+    for told in
+        ["10 points", "column `name`", "9 (line 11) repeats 4 (line 6)", "8 triangles", "passed"]
+    {
         assert!(text.contains(told), "{told}: {text}");
     }
     assert!(outputs.iter().all(|name| names(&folder).contains(&(*name).to_owned())));
@@ -107,7 +111,8 @@ fn every_engine_and_any_number_of_threads_write_the_same_bytes() {
         assert_exit(&run(&folder, &["delaunay", "cloud.csv", "--engine", engine, "-o", &name]), 0);
         assert_eq!(read(&folder, &name), read(&folder, "auto.json"), "{engine}");
     }
-    let arguments = ["delaunay", "-", "--from", "csv", "-o", "-", "--form", "json", "--threads", "3"];
+    let arguments =
+        ["delaunay", "-", "--from", "csv", "-o", "-", "--form", "json", "--threads", "3"];
     let output = run_with_input(&folder, &arguments, CLOUD);
     assert_exit(&output, 0);
     assert_eq!(out(&output), read(&folder, "auto.json"));
@@ -145,7 +150,10 @@ fn segments_are_constraints_and_crossings_are_named_or_cut() {
     let refused = run(&folder, &["delaunay", "walls.json", "-o", "a.off", "--hull"]);
     assert_exit(&refused, 1);
     let told = err(&refused);
-    assert!(told.contains("error[T4]") && told.contains("(1.0, 1.0)") && told.contains("(1.0, 3.0)"), "{told}");
+    assert!(
+        told.contains("error[T4]") && told.contains("(1.0, 1.0)") && told.contains("(1.0, 3.0)"),
+        "{told}"
+    );
     assert_eq!(names(&folder), ["walls.json"]);
     for extra in [&["--hull"][..], &[]] {
         let mut arguments =
@@ -155,9 +163,30 @@ fn segments_are_constraints_and_crossings_are_named_or_cut() {
         assert_exit(&output, 0);
         assert!(out(&output).contains("crossings  1 points"), "{}", out(&output));
     }
-    let alone = ["delaunay", "walls.json", "-o", "a.off", "--unconstrained", "--engine", "sweep", "--check"];
+    let alone = [
+        "delaunay",
+        "walls.json",
+        "-o",
+        "a.off",
+        "--unconstrained",
+        "--engine",
+        "sweep",
+        "--check",
+    ];
     assert_exit(&run(&folder, &alone), 0);
-    let sweep = run(&folder, &["delaunay", "walls.json", "-o", "b.off", "--hull", "--split-crossings", "--engine", "sweep"]);
+    let sweep = run(
+        &folder,
+        &[
+            "delaunay",
+            "walls.json",
+            "-o",
+            "b.off",
+            "--hull",
+            "--split-crossings",
+            "--engine",
+            "sweep",
+        ],
+    );
     assert_exit(&sweep, 2);
     assert!(err(&sweep).contains("divide-conquer"), "{}", err(&sweep));
 }
@@ -179,7 +208,8 @@ fn a_domain_is_carved_unless_its_hull_is_asked_for() {
     assert_eq!(triangles(&["--hull"]), 10);
     assert_eq!(triangles(&["--unconstrained"]), 10);
     // Open breaklines enclose nothing.
-    fs::write(folder.path().join("open.poly"), "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n1 0\n1 1 2\n0\n").expect("written");
+    fs::write(folder.path().join("open.poly"), "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n1 0\n1 1 2\n0\n")
+        .expect("written");
     let empty = run(&folder, &["delaunay", "open.poly", "-o", "b.off"]);
     assert_exit(&empty, 1);
     assert!(err(&empty).contains("--hull"), "{}", err(&empty));
@@ -189,7 +219,8 @@ fn a_domain_is_carved_unless_its_hull_is_asked_for() {
 // spec: K4 K5
 #[test]
 fn unreadable_points_are_refused_with_their_place() {
-    let folder = folder(&[("a.csv", "x,y\n1,2\n3,four\n"), ("a.npy", "\u{93}NUMPY"), ("a.xyz", "1 nan\n")]);
+    let folder =
+        folder(&[("a.csv", "x,y\n1,2\n3,four\n"), ("a.npy", "\u{93}NUMPY"), ("a.xyz", "1 nan\n")]);
     for verb in ["delaunay", "voronoi"] {
         let bad = run(&folder, &[verb, "a.csv", "-o", "b.json"]);
         assert_exit(&bad, 2);
@@ -214,7 +245,10 @@ fn unreadable_points_are_refused_with_their_place() {
 #[test]
 fn cells_are_written_in_every_form() {
     let folder = folder(&[("cloud.csv", CLOUD)]);
-    let output = run(&folder, &["voronoi", "cloud.csv", "--timings", "-o", "a.json", "-o", "a.svg", "-o", "a.png"]);
+    let output = run(
+        &folder,
+        &["voronoi", "cloud.csv", "--timings", "-o", "a.json", "-o", "a.svg", "-o", "a.png"],
+    );
     assert_exit(&output, 0);
     let text = out(&output);
     for told in ["9 cells", "9, 8 unbounded; 4 vertices, 12 edges", "repeats 4", "9 pieces"] {
@@ -230,7 +264,11 @@ fn cells_are_written_in_every_form() {
     }
     assert_exit(&run(&folder, &["voronoi", "cloud.csv", "-o", "b.obj"]), 2);
     assert_exit(&run(&folder, &["voronoi", "cloud.csv", "--clip", "1,1,0,0", "-o", "b.obj"]), 2);
-    let plain = run_with_input(&folder, &["voronoi", "-", "--from", "csv", "-o", "-", "--form", "json"], CLOUD);
+    let plain = run_with_input(
+        &folder,
+        &["voronoi", "-", "--from", "csv", "-o", "-", "--form", "json"],
+        CLOUD,
+    );
     assert_exit(&plain, 0);
     let value: Value = serde_json::from_slice(&plain.stdout).expect("JSON");
     assert_eq!(value.get("clipped"), None);
@@ -256,7 +294,8 @@ fn cells_are_clipped_to_a_domain() {
 fn few_sites_have_cells_or_say_that_there_are_none() {
     for (text, cells) in [("x,y\n", 0), ("1,2\n", 1), ("1,2\n3,4\n", 2), ("0,0\n1,1\n5,5\n", 3)] {
         let folder = folder(&[("few.csv", text)]);
-        let arguments = ["voronoi", "few.csv", "--clip", "box", "-o", "a.json", "-o", "a.obj", "-o", "a.svg"];
+        let arguments =
+            ["voronoi", "few.csv", "--clip", "box", "-o", "a.json", "-o", "a.obj", "-o", "a.svg"];
         assert_exit(&run(&folder, &arguments), 0);
         let value = json(&folder, "a.json");
         assert_eq!(value["cells"].as_array().map(Vec::len), Some(cells));
@@ -268,14 +307,21 @@ fn few_sites_have_cells_or_say_that_there_are_none() {
 #[test]
 fn reports_tell_the_check_of_a_triangulation() {
     let folder = folder(&[("cloud.csv", CLOUD)]);
-    let junit = ["delaunay", "cloud.csv", "-o", "a.off", "--check", "--report", "junit=r.xml", "--json"];
+    let junit =
+        ["delaunay", "cloud.csv", "-o", "a.off", "--check", "--report", "junit=r.xml", "--json"];
     let output = run(&folder, &junit);
     assert_exit(&output, 0);
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&report["schema"], &report["verdict"]), (&"trigrade-delaunay/1".into(), &"passed".into()));
+    assert_eq!(
+        (&report["schema"], &report["verdict"]),
+        (&"trigrade-delaunay/1".into(), &"passed".into())
+    );
     assert!(read(&folder, "r.xml").contains("M23"));
     // Without a check there is no verdict to report.
-    assert_exit(&run(&folder, &["delaunay", "cloud.csv", "-o", "a.off", "--report", "junit=r.xml"]), 2);
+    assert_exit(
+        &run(&folder, &["delaunay", "cloud.csv", "-o", "a.off", "--report", "junit=r.xml"]),
+        2,
+    );
 }
 
 #[test]

@@ -11,8 +11,7 @@ const POINTS_MAX: usize = 200;
 /// One input: the first byte chooses the form, the rest is the file.
 pub fn run(bytes: &[u8]) {
     let Some((&choice, file)) = bytes.split_first() else { return };
-    let forms =
-        [PointForm::Node, PointForm::Csv, PointForm::Xyz, PointForm::Npy, PointForm::Json];
+    let forms = [PointForm::Node, PointForm::Csv, PointForm::Xyz, PointForm::Npy, PointForm::Json];
     let form = forms[usize::from(choice) % forms.len()];
     let set = match read_points(file, form, None) {
         Ok(PointFile::Points(set)) => set,

@@ -90,11 +90,7 @@ fn triangulate(
 }
 
 /// Why there is no triangulation, as exit code and complaint.
-fn no_triangulation(
-    points: &Points,
-    domain: Option<&Domain>,
-    error: &TriangulateError,
-) -> Failure {
+fn no_triangulation(points: &Points, domain: Option<&Domain>, error: &TriangulateError) -> Failure {
     let name = &points.input.name;
     const SPLIT: &str = "--split-crossings cuts segments where they cross";
     const HULL: &str = "--hull keeps all of the hull, whatever is inside";
@@ -175,30 +171,25 @@ fn check_written(
     result: &Triangulated,
     is_constrained: bool,
 ) -> Result<(String, Report), Failure> {
-    let outline = result.outline.as_ref();
-    // Where no outline tells the segments, the file must.
-    let needs_edges = is_constrained && outline.is_none();
-    let (name, mesh) = read_back(outputs, files, result, needs_edges)?;
+    let (name, mesh) = read_back(outputs, files, result)?;
     let options = CheckOptions::default();
     let options = match is_constrained {
         true => options.constrained_delaunay(true),
         false => options.delaunay(true),
     };
-    Ok((name, check(&mesh, outline, &options)))
+    Ok((name, check(&mesh, result.outline.as_ref(), &options)))
 }
 
-/// The first mesh written that can be read back and keeps what is needed; else one through MSH.
+/// The first mesh written that can be read back; else one through MSH.
 fn read_back(
     outputs: &Outputs,
     files: &[OutputFile],
     result: &Triangulated,
-    needs_edges: bool,
 ) -> Result<(String, MeshData), Failure> {
     let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
     for (i, file) in files.iter().enumerate() {
         let OutputForm::Mesh(form, _) = file.form else { continue };
-        // STL has no points of its own: one in no triangle would be lost, and none is here.
-        if !is_read(form) || (needs_edges && !form.carries_edges()) {
+        if !is_read(form) {
             continue;
         }
         match file.companion {
@@ -288,7 +279,8 @@ impl Summary {
 
     fn meshed(&self) -> String {
         let mesh = &self.result.mesh;
-        let [triangles, points] = [mesh.triangles.len(), mesh.points.len()].map(|n| count(n as u64));
+        let [triangles, points] =
+            [mesh.triangles.len(), mesh.points.len()].map(|n| count(n as u64));
         let why = match mesh.points.len() {
             _ if !mesh.triangles.is_empty() => {
                 let engine = self.engine.name();
@@ -308,8 +300,11 @@ impl Summary {
             Some(_) => "failed",
             None => "not-checked",
         };
-        let times: serde_json::Map<String, Value> =
-            self.laps.iter().map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64()))).collect();
+        let times: serde_json::Map<String, Value> = self
+            .laps
+            .iter()
+            .map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64())))
+            .collect();
         let files = self.written.iter().filter(|path| !is_dash(path));
         let written: Vec<String> = files.map(|path| path.display().to_string()).collect();
         json!({

@@ -154,7 +154,11 @@ pub fn output_files_or_json(
         let extension = path.extension().and_then(|e| e.to_str());
         match said.or(extension).is_some_and(is_json) {
             true => {
-                files.push(OutputFile { path: path.clone(), form: OutputForm::Json, companion: None });
+                files.push(OutputFile {
+                    path: path.clone(),
+                    form: OutputForm::Json,
+                    companion: None,
+                });
             }
             false => files.extend(output_files(std::slice::from_ref(path), said)?),
         }

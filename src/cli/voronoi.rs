@@ -68,7 +68,8 @@ impl Clip {
         if text == "box" {
             return Ok(Self::Around);
         }
-        let is_numbers = text.contains(',') && text.split(',').all(|n| n.trim().parse::<f64>().is_ok());
+        let is_numbers =
+            text.contains(',') && text.split(',').all(|n| n.trim().parse::<f64>().is_ok());
         if !is_numbers {
             return Ok(Self::Domain(text.into()));
         }
@@ -94,9 +95,8 @@ pub fn run(
     watch.begin("read");
     let points = Points::load(&arguments.points, arguments.from.as_deref())?;
     watch.begin("tessellate");
-    let cells = voronoi(points.points(), true).map_err(|e| {
-        Failure::cannot_run(Diagnostic::new(e.to_string()).at(&points.input.name))
-    })?;
+    let cells = voronoi(points.points(), true)
+        .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string()).at(&points.input.name)))?;
     watch.begin("clip");
     let clipped = clip_cells(&cells, &clip, &arguments.clip_reading())?;
     watch.begin("write");
@@ -136,9 +136,9 @@ fn clip_cells(
         Clip::Domain(path) => {
             let (input, domain) = load_domain(path, reading)?;
             let plc = validate(&domain).map_err(|faults| invalid(&input.name, &faults))?;
-            let clipped = cells.clip_to_domain(&plc).map_err(|e| {
-                Failure::cannot_run(Diagnostic::new(e.to_string()).at(&input.name))
-            })?;
+            let clipped = cells
+                .clip_to_domain(&plc)
+                .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string()).at(&input.name)))?;
             return Ok(Some(clipped));
         }
     };
@@ -225,7 +225,10 @@ impl Summary {
             self.cells.edges.len(),
         ];
         let [cells, unbounded, vertices, edges] = numbers.map(|n| count(n as u64));
-        line("cells", format!("{cells}, {unbounded} unbounded; {vertices} vertices, {edges} edges"));
+        line(
+            "cells",
+            format!("{cells}, {unbounded} unbounded; {vertices} vertices, {edges} edges"),
+        );
         if let Some(clipped) = &self.clipped {
             line("clipped", format!("{} pieces", count(clipped.pieces.len() as u64)));
         }

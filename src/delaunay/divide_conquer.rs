@@ -228,10 +228,8 @@ impl<'a> Subdivision<'a> {
         if valid(self, lcand) {
             while self.segment(lcand) == FREE
                 && valid(self, self.onext(lcand))
-                && self.in_circle(
-                    [ends[0], ends[1], self.dest(lcand)],
-                    self.dest(self.onext(lcand)),
-                )
+                && self
+                    .in_circle([ends[0], ends[1], self.dest(lcand)], self.dest(self.onext(lcand)))
             {
                 let next = self.onext(lcand);
                 self.delete(lcand);
@@ -242,10 +240,8 @@ impl<'a> Subdivision<'a> {
         if valid(self, rcand) {
             while self.segment(rcand) == FREE
                 && valid(self, self.oprev(rcand))
-                && self.in_circle(
-                    [ends[0], ends[1], self.dest(rcand)],
-                    self.dest(self.oprev(rcand)),
-                )
+                && self
+                    .in_circle([ends[0], ends[1], self.dest(rcand)], self.dest(self.oprev(rcand)))
             {
                 let next = self.oprev(rcand);
                 self.delete(rcand);

@@ -36,8 +36,7 @@ pub enum PointForm {
 
 impl PointForm {
     /// The extensions that name a form, for messages.
-    pub const EXTENSIONS: &'static str =
-        "node, csv, tsv, xyz, txt, npy, json, geojson, poly, dat";
+    pub const EXTENSIONS: &'static str = "node, csv, tsv, xyz, txt, npy, json, geojson, poly, dat";
 
     /// The form of a file with this extension, in any case.
     #[must_use]

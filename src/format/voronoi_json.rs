@@ -12,11 +12,7 @@ pub const SCHEMA: &str = "trigrade-voronoi/1";
 ///
 /// # Errors
 /// Those of the output.
-pub fn write(
-    voronoi: &Voronoi,
-    clipped: Option<&Clipped>,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub fn write(voronoi: &Voronoi, clipped: Option<&Clipped>, out: &mut dyn Write) -> io::Result<()> {
     let mut text = TextOut::new(out);
     text.text(&format!("{{\"schema\":\"{SCHEMA}\",\n\"sites\":["))?;
     list(&mut text, &voronoi.sites, |text, p| numbers(text, &[p.x, p.y]))?;

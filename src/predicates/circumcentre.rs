@@ -279,9 +279,10 @@ mod tests {
     fn centre(a: Point2, b: Point2, c: Point2) -> [BigRational; 2] {
         let [p, q, r] = [a, b, c].map(|p| [exact(p.x), exact(p.y)]);
         let lift = |p: &[BigRational; 2]| &p[0] * &p[0] + &p[1] * &p[1];
-        let sum = |f: &dyn Fn(&[BigRational; 2], &[BigRational; 2], &[BigRational; 2]) -> BigRational| {
-            f(&p, &q, &r) + f(&q, &r, &p) + f(&r, &p, &q)
-        };
+        let sum =
+            |f: &dyn Fn(&[BigRational; 2], &[BigRational; 2], &[BigRational; 2]) -> BigRational| {
+                f(&p, &q, &r) + f(&q, &r, &p) + f(&r, &p, &q)
+            };
         let twice = exact(2.0) * sum(&|p, q, r| &p[0] * (&q[1] - &r[1]));
         let x = sum(&|p, q, r| lift(p) * (&q[1] - &r[1])) / &twice;
         let y = sum(&|p, q, r| lift(p) * (&r[0] - &q[0])) / &twice;

@@ -48,10 +48,7 @@ impl ClipBox {
         let margin = if half > 0.0 { half / 5.0 } else { 1.0 };
         let below = |v: f64| (v - margin).min(v.next_down()).max(f64::MIN);
         let above = |v: f64| (v + margin).max(v.next_up()).min(f64::MAX);
-        Self::new(
-            Point2::new(below(min.x), below(min.y)),
-            Point2::new(above(max.x), above(max.y)),
-        )
+        Self::new(Point2::new(below(min.x), below(min.y)), Point2::new(above(max.x), above(max.y)))
     }
 
     /// Lower left and upper right corner.

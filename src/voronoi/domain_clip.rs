@@ -10,9 +10,9 @@
 //! What is rounded are places: Voronoi vertices and crossings lie within a float or so of where they
 //! should be, and the domain's sloped segments go through the crossings on them.
 
+use super::Voronoi;
 use super::box_clip::ClipBox;
 use super::clipped::{Clipped, Corners, Piece, proper};
-use super::Voronoi;
 use crate::delaunay::{Cdt, CdtError, Split, cdt, split_crossings};
 use crate::domain::validate::{Plc, PlcInside};
 use crate::point::Point2;

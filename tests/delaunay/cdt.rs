@@ -276,7 +276,10 @@ fn both_ways_refuse_the_same_input() {
         assert_eq!(error, Some(CdtError::Unconstrained(engine.name())));
     }
     for few in [&[][..], &[p(1.0, 1.0)], &square[..2]] {
-        assert_eq!(halved(few, &[]).unwrap().triangulation.live_count(), if few.len() == 2 { 2 } else { 0 });
+        assert_eq!(
+            halved(few, &[]).unwrap().triangulation.live_count(),
+            if few.len() == 2 { 2 } else { 0 }
+        );
     }
 }
 

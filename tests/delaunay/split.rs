@@ -54,8 +54,10 @@ fn segments_are_cut_at_the_points_inside_them_and_nowhere_else() {
     assert_eq!((found.points, found.segments), (line, vec![[0, 1], [1, 2], [2, 3], [3, 4]]));
     let grid: Vec<_> = (0..49).map(|i| p(f64::from(i % 7), f64::from(i / 7))).collect();
     // Rows, columns and diagonals through the points; diagonals one way only.
-    let segments: Vec<[u32; 2]> =
-        (0..7).flat_map(|i| [[7 * i, 7 * i + 6], [i, 42 + i], [i, 7 * i]]).filter(|s| s[0] != s[1]).collect();
+    let segments: Vec<[u32; 2]> = (0..7)
+        .flat_map(|i| [[7 * i, 7 * i + 6], [i, 42 + i], [i, 7 * i]])
+        .filter(|s| s[0] != s[1])
+        .collect();
     let found = split_at_points(&grid, &segments).unwrap();
     assert_eq!(found.points, grid);
     let exact = split_crossings(&grid, &segments).unwrap();

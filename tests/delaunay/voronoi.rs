@@ -74,8 +74,11 @@ fn neighbours_are_delaunay_neighbours_but_across_a_common_circle() {
         };
         let expected: BTreeSet<[u32; 2]> =
             beside.iter().filter(|&entry| has_length(entry)).map(|entry| *entry.0).collect();
-        let found: BTreeSet<[u32; 2]> =
-            cells.edges.iter().map(|e| [e.sites[0].min(e.sites[1]), e.sites[0].max(e.sites[1])]).collect();
+        let found: BTreeSet<[u32; 2]> = cells
+            .edges
+            .iter()
+            .map(|e| [e.sites[0].min(e.sites[1]), e.sites[0].max(e.sites[1])])
+            .collect();
         assert_eq!(found.len(), cells.edges.len(), "{name}: an edge twice");
         if !triangles.is_empty() {
             assert_eq!(found, expected, "{name}");
@@ -134,7 +137,9 @@ fn vertices_are_rounded_to_nearest() {
         let all = cells.sites.iter().map(|&q| distance(q, x, y)).collect::<Vec<_>>();
         all.iter().max().unwrap() - all.iter().min().unwrap()
     };
-    for (other_x, other_y) in [(x.next_up(), y), (x.next_down(), y), (x, y.next_up()), (x, y.next_down())] {
+    for (other_x, other_y) in
+        [(x.next_up(), y), (x.next_down(), y), (x, y.next_up()), (x, y.next_down())]
+    {
         assert!(spread(x, y) < spread(other_x, other_y));
     }
 }
@@ -142,7 +147,8 @@ fn vertices_are_rounded_to_nearest() {
 // spec: V4
 #[test]
 fn few_sites_and_sites_on_a_line_have_cells() {
-    assert_eq!(tessellation(&[]), Voronoi { ..voronoi(&[], false).unwrap() });
+    let none = tessellation(&[]);
+    assert!(none.sites.is_empty() && none.edges.is_empty() && none.vertices.is_empty());
     let lone = tessellation(&[p(3.0, 4.0)]);
     assert!(lone.is_unbounded(0) && lone.cell(0).next().is_none() && lone.edges.is_empty());
     let two = tessellation(&[p(0.0, 0.0), p(2.0, 0.0)]);
@@ -223,7 +229,10 @@ fn clipped(cells: &Voronoi, bounds: ClipBox) -> Clipped {
     for &[a, b] in &edges {
         let [q, r] = [a, b].map(|v| clipped.points[v as usize]);
         let along = |v: f64, f: fn(Point2) -> f64| f(q) == v && f(r) == v;
-        let on_box = along(min.x, |p| p.x) || along(max.x, |p| p.x) || along(min.y, |p| p.y) || along(max.y, |p| p.y);
+        let on_box = along(min.x, |p| p.x)
+            || along(max.x, |p| p.x)
+            || along(min.y, |p| p.y)
+            || along(max.y, |p| p.y);
         assert!(on_box || edges.contains(&[b, a]), "an edge inside has two sides");
     }
     clipped
@@ -257,7 +266,8 @@ fn clipped_cells_cover_the_box() {
 fn a_box_through_vertices_and_along_edges_is_no_special_case() {
     let sites = clouds::grid(5, 1.0);
     let cells = tessellation(&sites);
-    for (low, high) in [(0.5, 3.5), (-0.5, 4.5), (1.0, 3.0), (0.5, 1.5), (1.5, 1.75), (-9.0, -0.5)] {
+    for (low, high) in [(0.5, 3.5), (-0.5, 4.5), (1.0, 3.0), (0.5, 1.5), (1.5, 1.75), (-9.0, -0.5)]
+    {
         let bounds = ClipBox::new(p(low, low), p(high, high)).unwrap();
         let clipped = clipped(&cells, bounds);
         for piece in &clipped.pieces {
@@ -306,8 +316,12 @@ fn sites_are_in_their_cells_and_cells_are_nearest_their_sites() {
                 assert_eq!(side, Sign::Positive, "{name} {}", piece.site);
             }
             let n = ring.len() as f64;
-            let middle = p(ring.iter().map(|q| q.x).sum::<f64>() / n, ring.iter().map(|q| q.y).sum::<f64>() / n);
-            let is_nearest = points.iter().all(|&other| nearer(middle, site, other) != Sign::Negative);
+            let middle = p(
+                ring.iter().map(|q| q.x).sum::<f64>() / n,
+                ring.iter().map(|q| q.y).sum::<f64>() / n,
+            );
+            let is_nearest =
+                points.iter().all(|&other| nearer(middle, site, other) != Sign::Negative);
             assert!(is_nearest, "{name} {}", piece.site);
         }
     }
@@ -350,15 +364,24 @@ fn domain(loops: &[&[[f64; 2]]]) -> Plc {
 }
 
 fn pieces_of(clipped: &Clipped) -> Vec<(u32, usize, f64)> {
-    let told = |piece: &trigrade::voronoi::Piece| (piece.site, piece.rings.len(), clipped.area(piece));
+    let told =
+        |piece: &trigrade::voronoi::Piece| (piece.site, piece.rings.len(), clipped.area(piece));
     clipped.pieces.iter().map(told).collect()
 }
 
 // spec: V7
 #[test]
 fn a_cell_may_fall_in_pieces_and_have_holes() {
-    let arch: &[[f64; 2]] =
-        &[[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [3.0, 3.0], [3.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    let arch: &[[f64; 2]] = &[
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [1.0, 3.0],
+        [3.0, 3.0],
+        [3.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 4.0],
+        [0.0, 4.0],
+    ];
     let arch = domain(&[arch]);
     let sites = [p(2.0, -1.0), p(2.0, 5.0)];
     let clipped = tessellation(&sites).clip_to_domain(&arch).unwrap();
@@ -378,8 +401,16 @@ fn a_cell_may_fall_in_pieces_and_have_holes() {
 // spec: V7
 #[test]
 fn pieces_cover_the_domain_exactly() {
-    let outer: &[[f64; 2]] =
-        &[[0.0, 0.0], [1.0, 0.0], [1.0, 0.75], [0.5, 0.75], [0.5, 0.5], [0.25, 0.5], [0.25, 1.0], [0.0, 1.0]];
+    let outer: &[[f64; 2]] = &[
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [1.0, 0.75],
+        [0.5, 0.75],
+        [0.5, 0.5],
+        [0.25, 0.5],
+        [0.25, 1.0],
+        [0.0, 1.0],
+    ];
     let hole: &[[f64; 2]] = &[[0.5, 0.125], [0.75, 0.125], [0.75, 0.25], [0.5, 0.25]];
     let plc = domain(&[outer, hole]);
     let area = 2.0 * (0.25 * 1.0 + 0.25 * 0.5 + 0.5 * 0.75 - 0.25 * 0.125);
@@ -399,7 +430,8 @@ fn pieces_cover_the_domain_exactly() {
 fn pieces_belong_to_the_nearest_site() {
     let star: Vec<[f64; 2]> = (0..14)
         .map(|i| {
-            let (r, angle) = (if i % 2 == 0 { 1.0 } else { 0.4 }, f64::from(i) * std::f64::consts::TAU / 14.0);
+            let (r, angle) =
+                (if i % 2 == 0 { 1.0 } else { 0.4 }, f64::from(i) * std::f64::consts::TAU / 14.0);
             [0.5 + r * libm::cos(angle), 0.5 + r * libm::sin(angle)]
         })
         .collect();
@@ -407,7 +439,8 @@ fn pieces_belong_to_the_nearest_site() {
     let clipped = tessellation(&sites).clip_to_domain(&domain(&[&star])).unwrap();
     for piece in &clipped.pieces {
         // The middle of an ear of the outer ring, which is inside the piece.
-        let ring: Vec<Point2> = piece.rings[0].iter().map(|&i| clipped.points[i as usize]).collect();
+        let ring: Vec<Point2> =
+            piece.rings[0].iter().map(|&i| clipped.points[i as usize]).collect();
         let n = ring.len();
         let ear = (0..n).find_map(|i| {
             let [a, b, c] = [ring[i], ring[(i + 1) % n], ring[(i + 2) % n]];
@@ -421,7 +454,8 @@ fn pieces_belong_to_the_nearest_site() {
         let middle = ear.expect("a polygon has an ear");
         let site = sites[piece.site as usize];
         // A sliver's middle may be off by a rounding.
-        let off = site.distance(middle) - sites.iter().map(|q| q.distance(middle)).fold(9.0, f64::min);
+        let off =
+            site.distance(middle) - sites.iter().map(|q| q.distance(middle)).fold(9.0, f64::min);
         assert!(off < 1e-12, "{} {off}", piece.site);
     }
     let total: f64 = clipped.pieces.iter().map(|piece| clipped.area(piece)).sum();
@@ -432,7 +466,16 @@ fn pieces_belong_to_the_nearest_site() {
 // spec: V7
 #[test]
 fn holes_of_carved_domains_are_left_out() {
-    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]];
+    let corners = [
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 4.0],
+        [0.0, 4.0],
+        [1.0, 1.0],
+        [3.0, 1.0],
+        [3.0, 3.0],
+        [1.0, 3.0],
+    ];
     let mut carved = Domain::new(corners.map(Point2::from).to_vec());
     let ring = |first: u32| (0..4).map(move |i| [first + i, first + (i + 1) % 4]);
     let segments = ring(0).chain(ring(4)).map(|vertices| Segment { vertices, marker: 1 });

@@ -76,9 +76,11 @@ impl Array {
         let shape = entry(header, b"'shape'").ok_or_else(|| missing("shape"))?;
         let [rows, columns] = table_shape(shape, scanner)?;
         // In 128 bits: the product of any two counts and 8 fits.
-        let (stated, present) = (rows as u128 * columns as u128 * size as u128, scanner.rest().len());
+        let (stated, present) =
+            (rows as u128 * columns as u128 * size as u128, scanner.rest().len());
         if stated > present as u128 {
-            let (declared, possible) = (i64::try_from(rows).unwrap_or(i64::MAX), present / size / columns);
+            let (declared, possible) =
+                (i64::try_from(rows).unwrap_or(i64::MAX), present / size / columns);
             let possible = possible as u64;
             return Err(scanner.fail(ReadFault::Count { what: "points", declared, possible }));
         }
@@ -94,7 +96,11 @@ impl Array {
         let mut set = PointSet { points: Vec::with_capacity(self.rows), ..PointSet::default() };
         for row in 0..self.rows {
             let place = |column| {
-                let index = if self.by_columns { column * self.rows + row } else { row * self.columns + column };
+                let index = if self.by_columns {
+                    column * self.rows + row
+                } else {
+                    row * self.columns + column
+                };
                 index * self.size
             };
             let [x, y] = [0, 1].map(|column| self.number(&bytes[place(column)..][..self.size]));
