@@ -277,16 +277,17 @@ mod tests {
 
     /// The centre in rational arithmetic.
     fn centre(a: Point2, b: Point2, c: Point2) -> [BigRational; 2] {
-        let [p, q, r] = [a, b, c].map(|p| [exact(p.x), exact(p.y)]);
-        let lift = |p: &[BigRational; 2]| &p[0] * &p[0] + &p[1] * &p[1];
-        let sum =
-            |f: &dyn Fn(&[BigRational; 2], &[BigRational; 2], &[BigRational; 2]) -> BigRational| {
-                f(&p, &q, &r) + f(&q, &r, &p) + f(&r, &p, &q)
-            };
-        let twice = exact(2.0) * sum(&|p, q, r| &p[0] * (&q[1] - &r[1]));
-        let x = sum(&|p, q, r| lift(p) * (&q[1] - &r[1])) / &twice;
-        let y = sum(&|p, q, r| lift(p) * (&r[0] - &q[0])) / &twice;
-        [x, y]
+        let orders =
+            [[a, b, c], [b, c, a], [c, a, b]].map(|order| order.map(|p| [exact(p.x), exact(p.y)]));
+        let (mut x, mut y, mut half) = (exact(0.0), exact(0.0), exact(0.0));
+        for [p, q, r] in &orders {
+            let lift = &p[0] * &p[0] + &p[1] * &p[1];
+            x += &lift * (&q[1] - &r[1]);
+            y += &lift * (&r[0] - &q[0]);
+            half += &p[0] * (&q[1] - &r[1]);
+        }
+        let twice = exact(2.0) * half;
+        [x / &twice, y / &twice]
     }
 
     /// Whether a float is the nearest to a number, ties to even, clamped to the range.
@@ -299,7 +300,7 @@ mod tests {
         let neighbours = [rounded.next_down(), rounded.next_up()];
         neighbours.into_iter().filter(|v| v.is_finite()).all(|v| {
             let order = off(rounded).cmp(&off(v));
-            order.is_lt() || (order.is_eq() && rounded.to_bits() % 2 == 0)
+            order.is_lt() || (order.is_eq() && rounded.to_bits().is_multiple_of(2))
         })
     }
 
