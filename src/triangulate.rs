@@ -33,6 +33,8 @@ pub struct Options {
     pub hull: bool,
     /// Cut segments where they cross, at rounded crossings, in place of refusing them.
     pub split_crossings: bool,
+    /// Whether [`Triangulated::outline`] is wanted.
+    pub outline: bool,
 }
 
 /// A Delaunay triangulation as plain data.
@@ -49,7 +51,7 @@ pub struct Triangulated {
     /// How many points are crossings.
     pub crossings: usize,
     /// What an independent check needs to know: the region to be covered and the segments in it, in
-    /// pieces that do not cross. `None` if there are no triangles.
+    /// pieces that do not cross. `None` if there are no triangles or it is not wanted.
     pub outline: Option<Domain>,
 }
 
@@ -106,7 +108,7 @@ pub fn triangulate_points(
     let mut mesh = Mesh { points: keep.pick(points), ..Mesh::default() };
     mesh.triangles = corners.collect();
     mesh.edges = hull_edges(&result.triangulation, |v| keep.map[v as usize]);
-    let outline = outline(&mesh);
+    let outline = options.outline.then(|| outline(&mesh)).flatten();
     let map = keep.map.into_iter().map(Some).collect();
     Ok(Triangulated { mesh, map, repeated: keep.repeated, crossings: 0, outline })
 }
@@ -129,7 +131,7 @@ pub fn triangulate_domain(
         let renumbered = |v: &u32| result.map[*v as usize];
         result.map = plc.vertex_of.iter().map(renumbered).collect();
         result.repeated = Kept::of_equal(&domain.points).repeated;
-        result.outline = Some(domain.clone());
+        result.outline = options.outline.then(|| domain.clone());
         return Ok(result);
     }
     let pieces = Pieces::of(domain, options.split_crossings)?;
@@ -141,7 +143,7 @@ pub fn triangulate_domain(
     result.map = pieces.kept.map.iter().map(|&v| result.map[v as usize]).collect();
     result.repeated = pieces.kept.repeated;
     result.crossings = pieces.split.points.len() - pieces.distinct;
-    if result.outline.is_none() && !result.mesh.triangles.is_empty() {
+    if options.outline && !options.hull {
         result.outline = Some(pieces_as_domain(&plc, domain));
     }
     Ok(result)
@@ -304,7 +306,7 @@ fn whole_hull(plc: &Plc, options: Options) -> Result<Triangulated, TriangulateEr
     let hull = hull_edges(&cdt.triangulation, |v| v);
     let is_new = |edge: &MarkedEdge| known.binary_search(&sorted(edge.vertices)).is_err();
     mesh.edges.extend(hull.into_iter().filter(is_new));
-    let outline = outline(&mesh);
+    let outline = options.outline.then(|| outline(&mesh)).flatten();
     let map = (0..plc.points.len() as u32).map(Some).collect();
     Ok(Triangulated { mesh, map, outline, ..Triangulated::default() })
 }

@@ -112,8 +112,8 @@ impl Voronoi {
     /// Whether the site's cell is unbounded; so is that of a lone site.
     #[must_use]
     pub fn is_unbounded(&self, site: u32) -> bool {
-        self.cell(site).next().is_none_or(|side| side.ends.contains(&None))
-            || self.cell(site).any(|side| side.ends.contains(&None))
+        let mut sides = self.cell(site).peekable();
+        sides.peek().is_none() || sides.any(|side| side.ends.contains(&None))
     }
 
     /// Whether the point has a cell: it repeats no other.

@@ -75,6 +75,7 @@ fn options(arguments: &DelaunayArguments) -> Options {
         parallel: true,
         hull: arguments.hull,
         split_crossings: arguments.split_crossings,
+        outline: arguments.check,
     }
 }
 

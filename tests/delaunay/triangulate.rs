@@ -14,6 +14,11 @@ fn p(x: f64, y: f64) -> Point2 {
     Point2::new(x, y)
 }
 
+/// With an outline for the checker.
+fn wanted() -> Options {
+    Options { outline: true, ..Options::default() }
+}
+
 /// Lets the checker judge, and checks the map.
 fn judged(given: &[Point2], result: &Triangulated, constrained: bool) {
     assert_eq!(result.map.len(), given.len());
@@ -45,7 +50,7 @@ fn points_with_repetitions_give_a_mesh_that_passes_its_check() {
         let mut given: Vec<Point2> = points.iter().flat_map(|&q| [q, q]).collect();
         random.shuffle(&mut given);
         for engine in Engine::ALL {
-            let options = Options { engine, ..Options::default() };
+            let options = Options { engine, ..wanted() };
             let result = triangulate_points(&given, options).expect(name);
             judged(&given, &result, false);
             assert_eq!(result.mesh.points.len(), points.len(), "{name}");
@@ -60,7 +65,7 @@ fn points_with_repetitions_give_a_mesh_that_passes_its_check() {
 #[test]
 fn without_a_triangle_the_points_are_there() {
     for points in [vec![], vec![p(1.0, 2.0)], vec![p(0.0, 0.0), p(1.0, 1.0)], clouds::line(9)] {
-        let result = triangulate_points(&points, Options::default()).unwrap();
+        let result = triangulate_points(&points, wanted()).unwrap();
         assert_eq!((result.mesh.points.len(), result.mesh.triangles.len()), (points.len(), 0));
         assert!(result.outline.is_none() && result.mesh.edges.is_empty());
         judged(&points, &result, false);
@@ -104,13 +109,13 @@ fn markers(result: &Triangulated) -> Vec<(i32, usize)> {
 fn a_domain_is_carved_by_its_rule_or_keeps_its_hull() {
     let plate = plate();
     for engine in [Engine::Auto, Engine::DivideConquer] {
-        let carved = triangulate_domain(&plate, Options { engine, ..Options::default() }).unwrap();
+        let carved = triangulate_domain(&plate, Options { engine, ..wanted() }).unwrap();
         judged(&plate.points, &carved, true);
         assert_eq!(carved.map[11], None, "outside");
         assert_eq!(carved.mesh.points.len(), 11);
         assert!(carved.mesh.regions.iter().all(|&region| region == 42));
         assert_eq!(markers(&carved), [(5, 4), (6, 4), (7, 1)]);
-        let hull = Options { engine, hull: true, ..Options::default() };
+        let hull = Options { engine, hull: true, ..wanted() };
         let hull = triangulate_domain(&plate, hull).unwrap();
         judged(&plate.points, &hull, true);
         assert!(hull.map.iter().all(Option::is_some));
@@ -125,16 +130,16 @@ fn segments_that_cross_are_refused_or_cut() {
     let mut plate = plate();
     plate.points.extend([p(0.5, 1.25), p(3.5, 2.0)]);
     plate.segments.push(Segment { vertices: [12, 13], marker: 8 });
-    let invalid = triangulate_domain(&plate, Options::default());
+    let invalid = triangulate_domain(&plate, wanted());
     let Err(TriangulateError::Invalid(faults)) = invalid else { panic!("{invalid:?}") };
     assert!(faults.iter().all(|fault| fault.id() == "D8"));
-    let hull = Options { hull: true, ..Options::default() };
+    let hull = Options { hull: true, ..wanted() };
     let crossing = triangulate_domain(&plate, hull);
     assert!(
         matches!(crossing, Err(TriangulateError::Segments(CdtError::Crossing { .. }))),
         "{crossing:?}"
     );
-    let split = Options { split_crossings: true, ..Options::default() };
+    let split = Options { split_crossings: true, ..wanted() };
     for options in [split, Options { hull: true, ..split }] {
         let cut = triangulate_domain(&plate, options).unwrap();
         judged(&plate.points, &cut, true);
@@ -152,8 +157,8 @@ fn loops_that_cross_themselves_have_an_inside_by_parity() {
     let mut bow =
         Domain::new([[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]].map(Point2::from).to_vec());
     bow.loops = vec![Loop::new(vec![0, 1, 2, 3], 1, LoopRole::Any)];
-    assert!(triangulate_domain(&bow, Options::default()).is_err());
-    let split = Options { split_crossings: true, ..Options::default() };
+    assert!(triangulate_domain(&bow, wanted()).is_err());
+    let split = Options { split_crossings: true, ..wanted() };
     let result = triangulate_domain(&bow, split).unwrap();
     judged(&bow.points, &result, true);
     assert_eq!((result.crossings, result.mesh.triangles.len()), (1, 2));
@@ -171,9 +176,9 @@ fn breaklines_through_points_and_over_each_other_keep_the_hull() {
     // Rows and a diagonal through points, and an overlap.
     terrain.segments = vec![line(0, 11, 2), line(14, 20, 3), line(16, 23, 4), line(0, 143, 5)];
     terrain.inside = Inside::Carve(Vec::new());
-    assert!(triangulate_domain(&terrain, Options::default()).is_err());
+    assert!(triangulate_domain(&terrain, wanted()).is_err());
     for engine in [Engine::Auto, Engine::DivideConquer] {
-        let options = Options { engine, hull: true, ..Options::default() };
+        let options = Options { engine, hull: true, ..wanted() };
         let result = triangulate_domain(&terrain, options).unwrap();
         judged(&terrain.points, &result, true);
         assert_eq!((result.crossings, result.mesh.triangles.len()), (0, 242));
@@ -186,7 +191,7 @@ fn breaklines_through_points_and_over_each_other_keep_the_hull() {
 // spec: L7 !L7
 #[test]
 fn unsound_segments_are_named() {
-    let hull = Options { hull: true, ..Options::default() };
+    let hull = Options { hull: true, ..wanted() };
     let mut plate = plate();
     plate.segments[0].vertices = [8, 99];
     let bad = triangulate_domain(&plate, hull);
@@ -201,7 +206,7 @@ fn unsound_segments_are_named() {
     plate.segments.clear();
     plate.points[0].x = f64::NAN;
     assert!(matches!(triangulate_domain(&plate, hull), Err(TriangulateError::Points(_))));
-    let sweep = Options { engine: Engine::Sweep, ..Options::default() };
+    let sweep = Options { engine: Engine::Sweep, ..wanted() };
     let unconstrained = triangulate_domain(&self::plate(), sweep);
     let expected = TriangulateError::Segments(CdtError::Unconstrained("sweep"));
     assert_eq!(unconstrained, Err(expected));
