@@ -7,25 +7,22 @@ use std::sync::Arc;
 
 /// Draws a page; the font is built in, so the machine's fonts play no part.
 pub fn png(page: &Page<'_>, options: &Options) -> Result<Vec<u8>, DrawError> {
-    let svg = page.svg();
-    let size = [options.width, page.height];
-    draw(&svg, size, options.png_scale)
+    let tree = usvg::Tree::from_str(&page.svg(), &parser_options()).map_err(reason)?;
+    draw(&tree, [options.width, page.height], options.png_scale)
 }
 
 /// Draws an SVG document that says its size.
 pub fn rasterise(svg: &str, scale: f32) -> Result<Vec<u8>, DrawError> {
     let tree = usvg::Tree::from_str(svg, &parser_options()).map_err(reason)?;
-    let size = [tree.size().width(), tree.size().height()].map(f64::from);
-    draw(svg, size, scale)
+    draw(&tree, [tree.size().width(), tree.size().height()].map(f64::from), scale)
 }
 
-fn draw(svg: &str, size: [f64; 2], scale: f32) -> Result<Vec<u8>, DrawError> {
-    let tree = usvg::Tree::from_str(svg, &parser_options()).map_err(reason)?;
+fn draw(tree: &usvg::Tree, size: [f64; 2], scale: f32) -> Result<Vec<u8>, DrawError> {
     let [width, height] = size.map(|x| (x * f64::from(scale)).ceil());
     let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32)
         .ok_or_else(|| reason(format!("{width} x {height} dots do not fit memory")))?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
-    resvg::render(&tree, transform, &mut pixmap.as_mut());
+    resvg::render(tree, transform, &mut pixmap.as_mut());
     pixmap.encode_png().map_err(reason)
 }
 

@@ -44,9 +44,10 @@ fn engines_agree_on_the_cocircular_3600() {
     }
 }
 
-/// Every engine on 100,000 points of each cloud and on grids of a million; Fang and Piegl's, which is
+/// Every engine on 100,000 points of each cloud and on grids of a million, but on 20,000 of the axis
+/// cross, where each point inserted along a curve sees all before it; Fang and Piegl's, which is
 /// quadratic where the grid does not spread the points, where it does. With spade on the clouds
-/// that have no ties and no extreme coordinates. Some minutes: `--release -- --ignored large`.
+/// that have no ties and no extreme coordinates. Some minutes: `-- --ignored large`.
 // spec: L1 L2
 #[test]
 #[ignore = "minutes"]
@@ -54,7 +55,10 @@ fn engines_agree_on_large_clouds() {
     let mut large = clouds::all(100_000);
     large.push(("grid of a million", clouds::grid(1000, 1.0)));
     large.push(("grid of a million times 0.1", clouds::grid(1000, 0.1)));
-    for (name, points) in large {
+    for (name, mut points) in large {
+        if name == "axis cross" {
+            points.truncate(20_000);
+        }
         let first = with(Engine::Auto, &points);
         first.triangulation.verify_geometry(&points).expect(name);
         let triangles = first.triangles();
