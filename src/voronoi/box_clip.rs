@@ -105,13 +105,13 @@ impl Voronoi {
     #[must_use]
     pub fn clip_to_box(&self, bounds: ClipBox) -> Clipped {
         let clip = Clip::new(self, bounds);
-        let mut corners = Corners::default();
+        let mut corners = Numbered::of(self.vertices.len());
         let mut pieces = Vec::new();
         for site in (0..self.sites.len() as u32).filter(|&site| self.has_cell(site)) {
             let ring = clip.ring(site, &mut corners);
             pieces.extend(proper(ring).map(|ring| Piece { site, rings: vec![ring] }));
         }
-        Clipped { points: corners.points, pieces }
+        Clipped { points: corners.corners.points, pieces }
     }
 
     /// Each edge as far as it lies in a box, its ends rounded, with the index of the edge.
@@ -120,6 +120,23 @@ impl Voronoi {
         let edges = self.edges.iter().zip(&clip.ends).zip(0..);
         let inside = edges.filter_map(|((edge, ends), i)| Some((i, edge, (*ends)?)));
         inside.map(|(i, edge, ends)| (i, ends.map(|end| clip.place(edge, end)))).collect()
+    }
+}
+
+/// Corners, with the numbers that vertices have among them once they are known.
+struct Numbered {
+    corners: Corners,
+    of_vertex: Vec<Option<u32>>,
+}
+
+impl Numbered {
+    fn of(vertices: usize) -> Self {
+        Self { corners: Corners::default(), of_vertex: vec![None; vertices] }
+    }
+
+    fn vertex(&mut self, vertex: u32, at: Point2) -> u32 {
+        let corners = &mut self.corners;
+        *self.of_vertex[vertex as usize].get_or_insert_with(|| corners.at(at))
     }
 }
 
@@ -212,7 +229,7 @@ impl<'a> Clip<'a> {
     }
 
     /// The corners of a cell's part in the box, counterclockwise.
-    fn ring(&self, site: u32, corners: &mut Corners) -> Vec<u32> {
+    fn ring(&self, site: u32, numbered: &mut Numbered) -> Vec<u32> {
         let sides: Vec<(&Edge, [End; 2])> = self
             .voronoi
             .cell(site)
@@ -224,13 +241,19 @@ impl<'a> Clip<'a> {
             .collect();
         let mut ring = Vec::new();
         if sides.is_empty() && self.owns_box(site) {
-            ring.extend((0..4).map(|i| corners.at(self.bounds.corner(i))));
+            ring.extend((0..4).map(|i| numbered.corners.at(self.bounds.corner(i))));
         }
         for (i, &(edge, [from, to])) in sides.iter().enumerate() {
-            ring.push(corners.at(self.place(edge, from)));
+            let place = self.place(edge, from);
+            ring.push(match from {
+                End::Vertex(vertex) => numbered.vertex(vertex, place),
+                End::On(_) => numbered.corners.at(place),
+            });
+            // A vertex is where the next side starts.
+            let End::On(leaves) = to else { continue };
+            let corners = &mut numbered.corners;
             ring.push(corners.at(self.place(edge, to)));
-            let next = sides[(i + 1) % sides.len()].1[0];
-            let (End::On(leaves), End::On(enters)) = (to, next) else { continue };
+            let End::On(enters) = sides[(i + 1) % sides.len()].1[0] else { continue };
             // A lone edge cuts off what lies on its left, all around.
             let mut side = leaves;
             while side != enters {
