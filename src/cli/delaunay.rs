@@ -197,7 +197,8 @@ fn read_back(
             Some(companion) => companions.push((companion, outputs.read_back(i)?)),
             None => {
                 let name = file.path.display().to_string();
-                let mesh = parse(&outputs.read_back(i)?, form, &std::mem::take(&mut companions));
+                let mesh =
+                    parse(&outputs.read_back(i)?, form, &std::mem::take(&mut companions), false);
                 let mesh = mesh.map_err(|e| unreadable(&name, &e))?;
                 return Ok((name, mesh));
             }
@@ -207,7 +208,7 @@ fn read_back(
     let mut bytes = Vec::new();
     write_mesh(MeshView::from(&result.mesh), MeshForm::Msh, WriteOptions::default(), &mut bytes)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
-    let mesh = parse(&bytes, MeshForm::Msh, &[]).map_err(|e| unreadable(&name, &e))?;
+    let mesh = parse(&bytes, MeshForm::Msh, &[], false).map_err(|e| unreadable(&name, &e))?;
     Ok((name, mesh))
 }
 
