@@ -16,7 +16,7 @@ use clouds::Random;
 use spade::Triangulation as _;
 use std::hint::black_box;
 use std::time::Instant;
-use trigrade::delaunay::{Engine, Options, cdt, delaunay};
+use trigrade::delaunay::{Engine, Options, cdt, cdt_with, delaunay};
 use trigrade::point::Point2;
 
 /// Nanoseconds this thread has had a processor, where the system tells (Linux): on a machine that
@@ -176,16 +176,18 @@ fn long_segments(points: usize, count: usize) -> (Vec<Point2>, Vec<[u32; 2]>) {
 }
 
 fn constrained() {
-    println!("ms                     points segments    cdt   delaunay    spade");
+    println!("ms                     points segments    cdt  by halves  delaunay    spade");
     let inputs = [("coast", coast(243_000)), ("long segments", long_segments(100_000, 300))];
     for (name, (points, segments)) in inputs {
         let n = points.len();
         let ms = |ns: f64| ns * n as f64 / 1e6;
         let ours = ms(time(n, || cdt(&points, &segments).expect("sound")));
+        let halves = Options { engine: Engine::DivideConquer, ..Options::default() };
+        let halves = ms(time(n, || cdt_with(&points, &segments, halves).expect("sound")));
         let plain = ms(time(n, || delaunay(&points, Options::default())));
         let theirs = ms(time(n, || spade_cdt(&points, &segments)));
         println!(
-            "{name:<18} {n:>10} {:>8} {ours:>6.0} {plain:>10.0} {theirs:>8.0}",
+            "{name:<18} {n:>10} {:>8} {ours:>6.0} {halves:>10.0} {plain:>9.0} {theirs:>8.0}",
             segments.len()
         );
     }
@@ -205,8 +207,10 @@ fn main() {
         }
         _ => {
             let wanted = |name: &str| argument(2).is_none_or(|only| only == name);
-            let clouds: Vec<_> =
-                clouds::all(count).into_iter().filter(|(name, _)| wanted(name)).collect();
+            let mut clouds = clouds::all(count);
+            let thrice = clouds::uniform(count.div_ceil(3), 3).into_iter().flat_map(|p| [p; 3]);
+            clouds.push(("duplicates", thrice.collect()));
+            clouds.retain(|(name, _)| wanted(name));
             point_clouds(&clouds);
         }
     }

@@ -117,10 +117,19 @@ impl Background {
     /// See [`BackgroundError`]; for a `Plc` made by validation the points and segments are sound.
     pub fn new(plc: &Plc) -> Result<Self, BackgroundError> {
         let ends: Vec<[u32; 2]> = plc.segments.iter().map(|s| s.vertices).collect();
+        Self::of(plc, cdt(&plc.points, &ends)?)
+    }
+
+    /// Tags the triangles of the constrained Delaunay triangulation of the domain's points and
+    /// segments.
+    ///
+    /// # Errors
+    /// See [`BackgroundError`]; those of seeds, and a domain with nothing inside.
+    pub fn of(plc: &Plc, cdt: Cdt) -> Result<Self, BackgroundError> {
         if plc.regions.len() >= (1 << 28) - 2 {
             return Err(BackgroundError::TooManyRegions(plc.regions.len()));
         }
-        let Cdt { mut triangulation, outgoing, segments } = cdt(&plc.points, &ends)?;
+        let Cdt { mut triangulation, outgoing, segments } = cdt;
         let mut faces = Faces { plc, segments: &segments, triangulation: &mut triangulation };
         match &plc.inside {
             PlcInside::EvenOdd => faces.flood_even_odd(),

@@ -4,6 +4,7 @@ pub mod arguments;
 pub mod check;
 pub mod console;
 pub mod convert;
+pub mod delaunay;
 pub mod demo;
 pub mod domain_file;
 pub mod explain;
@@ -14,8 +15,10 @@ pub mod mesh;
 pub mod mesh_file;
 pub mod outcome;
 pub mod output;
+pub mod point_file;
 pub mod torture;
 pub mod verdict;
+pub mod voronoi;
 pub mod watch;
 
 use arguments::{Arguments, Verb};
@@ -69,6 +72,8 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
     match verb {
         Verb::Mesh(mesh) => return mesh::run(mesh, console, cleanup),
         Verb::Check(check) => return check::run(check, console, cleanup),
+        Verb::Delaunay(delaunay) => return delaunay::run(delaunay, console, cleanup),
+        Verb::Voronoi(arguments) => return voronoi::run(arguments, console, cleanup),
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),
@@ -82,7 +87,11 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
 
 /// Whether a verb ends in a verdict on a mesh, which reports of every form can tell.
 fn has_verdict(verb: &Verb) -> bool {
-    matches!(verb, Verb::Mesh(_) | Verb::Check(_))
+    match verb {
+        Verb::Mesh(_) | Verb::Check(_) => true,
+        Verb::Delaunay(delaunay) => delaunay.check,
+        _ => false,
+    }
 }
 
 /// The file that a report of a failed run is about.
@@ -90,6 +99,7 @@ fn subject(verb: &Verb) -> String {
     match verb {
         Verb::Mesh(mesh) => mesh.domain.display().to_string(),
         Verb::Check(check) => check.mesh.display().to_string(),
+        Verb::Delaunay(delaunay) => delaunay.points.display().to_string(),
         _ => String::new(),
     }
 }
@@ -98,6 +108,8 @@ fn subject(verb: &Verb) -> String {
 fn outputs(verb: &Verb) -> &[PathBuf] {
     match verb {
         Verb::Mesh(mesh) => &mesh.outputs,
+        Verb::Delaunay(delaunay) => &delaunay.outputs,
+        Verb::Voronoi(voronoi) => &voronoi.outputs,
         Verb::Convert(convert) => &convert.outputs,
         Verb::Plot(plot) => &plot.outputs,
         _ => &[],

@@ -2,9 +2,10 @@
 
 mod assemble;
 mod divide_conquer;
+mod divide_conquer_cdt;
 mod fang_piegl;
 mod fast;
-mod hull;
+pub(crate) mod hull;
 mod incremental;
 pub(crate) mod lawson;
 mod order;
@@ -12,7 +13,7 @@ mod split;
 mod sweep;
 mod watson;
 
-pub use split::{Split, split_crossings};
+pub use split::{Split, split_at_points, split_crossings};
 
 use crate::point::Point2;
 use crate::triangulation::constrain::Obstacle;
@@ -152,7 +153,7 @@ pub fn delaunay(points: &[Point2], options: Options) -> Result<Delaunay, PointsE
 
 /// The different points in lexicographic order, the lowest index of each, and the rest as
 /// [`Delaunay::repeated`].
-fn merge_equal(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
+pub(crate) fn merge_equal(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     let at = |i: u32| points[i as usize];
     order.sort_unstable_by(|&a, &b| at(a).lexicographic(at(b)).then(a.cmp(&b)));
@@ -204,6 +205,9 @@ pub enum CdtError {
         /// How many points there are.
         count: usize,
     },
+    /// The engine has no constraints.
+    #[error("the engine {0} has no constraints; auto and divide-conquer have")]
+    Unconstrained(&'static str),
     /// Two segments cross.
     #[error("segments {first} and {second} cross")]
     Crossing {
@@ -245,8 +249,34 @@ pub const POINTS_MAX: usize = crate::triangulation::TRIANGLES_MAX / 2;
 /// # Complexity
 /// `n log n` for points in any order, plus the triangles that the segments cross.
 pub fn cdt(points: &[Point2], segments: &[[u32; 2]]) -> Result<Cdt, CdtError> {
+    cdt_with(points, segments, Options::default())
+}
+
+/// [`cdt`] by a given engine: [`Engine::Auto`] forces segment after segment,
+/// [`Engine::DivideConquer`] merges constrained triangulations of halves.
+///
+/// # Errors
+/// See [`CdtError`]; the other engines have no constraints.
+pub fn cdt_with(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    options: Options,
+) -> Result<Cdt, CdtError> {
     check_segments(points.len(), segments)?;
-    let Delaunay { mut triangulation, repeated } = delaunay(points, Options::default())?;
+    match options.engine {
+        Engine::Auto => force_all(points, segments, options),
+        Engine::DivideConquer => {
+            check_points(points)?;
+            check_distinct(points)?;
+            divide_conquer_cdt::triangulate(points, segments)
+        }
+        other => Err(CdtError::Unconstrained(other.name())),
+    }
+}
+
+/// Forces segment after segment into the Delaunay triangulation.
+fn force_all(points: &[Point2], segments: &[[u32; 2]], options: Options) -> Result<Cdt, CdtError> {
+    let Delaunay { mut triangulation, repeated } = delaunay(points, options)?;
     if let Some(&[second, first]) = repeated.first() {
         return Err(CdtError::Duplicate { first, second, point: points[first as usize] });
     }
@@ -254,12 +284,21 @@ pub fn cdt(points: &[Point2], segments: &[[u32; 2]]) -> Result<Cdt, CdtError> {
     for i in 0..segments.len() {
         force(&mut triangulation, points, (segments, i), &mut outgoing)?;
     }
+    Ok(found(triangulation, outgoing, segments))
+}
+
+/// The triangulation with the half-edge of each segment, which is an edge of it.
+fn found(
+    triangulation: Triangulation,
+    outgoing: Vec<Option<HalfEdgeId>>,
+    segments: &[[u32; 2]],
+) -> Cdt {
     let find = |&[a, b]: &[u32; 2]| {
         let from = outgoing[a as usize].expect("every point is a vertex");
         triangulation.half_edge_to(from, VertexId(b)).expect("every segment is an edge")
     };
     let segments = segments.iter().map(find).collect();
-    Ok(Cdt { triangulation, outgoing, segments })
+    Cdt { triangulation, outgoing, segments }
 }
 
 fn force(
@@ -287,12 +326,21 @@ fn force(
     }
 }
 
-fn check_points(points: &[Point2]) -> Result<(), PointsError> {
+pub(crate) fn check_points(points: &[Point2]) -> Result<(), PointsError> {
     if points.len() > POINTS_MAX {
         return Err(PointsError::TooMany { count: points.len(), max: POINTS_MAX });
     }
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(PointsError::NotFinite { index: i as u32, point: points[i] }),
+        None => Ok(()),
+    }
+}
+
+fn check_distinct(points: &[Point2]) -> Result<(), CdtError> {
+    match merge_equal(points).2.first() {
+        Some(&[second, first]) => {
+            Err(CdtError::Duplicate { first, second, point: points[first as usize] })
+        }
         None => Ok(()),
     }
 }

@@ -14,6 +14,7 @@
 use crate::mesh::MeshData;
 use serde::Serialize;
 
+mod cells;
 mod edges;
 mod findings;
 mod frame;
@@ -28,6 +29,9 @@ mod path;
 mod png;
 mod text;
 
+#[cfg(feature = "png")]
+pub use cells::cells_png;
+pub use cells::cells_svg;
 pub use findings::highlights;
 pub use frame::{ParseViewError, View};
 pub use html::{Background, Viewer, html};

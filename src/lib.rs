@@ -20,7 +20,9 @@ pub mod improve;
 pub mod mesher;
 pub mod predicates;
 pub mod size;
+pub mod triangulate;
 pub mod triangulation;
+pub mod voronoi;
 
 pub mod domain;
 pub mod mesh;

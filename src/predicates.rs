@@ -15,6 +15,7 @@
 //! bounds of the filter hold for every IEEE 754 evaluation in double precision.
 
 mod adaptive;
+mod circumcentre;
 mod crossing;
 mod exact;
 mod filter;
@@ -24,7 +25,8 @@ mod perturbed;
 mod segment;
 mod wide;
 
-pub use crossing::rounded_crossing;
+pub use circumcentre::{compare_circumcentre, nearer, rounded_bisector, rounded_circumcentre};
+pub use crossing::{Axis, rounded_crossing};
 pub use ladder::{Rung, incircle, incircle_with_rung, orient2d, orient2d_with_rung};
 #[doc(hidden)]
 pub use ladder::{incircle_by_every_rung, orient2d_by_every_rung};

@@ -126,6 +126,11 @@ fn pipeline() {
 }
 
 #[test]
+fn point_files() {
+    run(TARGETS[5]);
+}
+
+#[test]
 #[should_panic(expected = "fails on this input")]
 fn a_fault_is_not_swallowed() {
     run_one(("canary", |bytes| assert!(bytes.len() < 3, "a fault on purpose")), b"abc");

@@ -7,16 +7,18 @@ pub mod domain_parsers;
 pub mod exact;
 pub mod mesh_readers;
 pub mod pipeline;
+pub mod point_files;
 pub mod predicates;
 
 /// A target: its name, which is also the name of its corpus, and its body.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 5] = [
+pub const TARGETS: [Target; 6] = [
     ("predicates", predicates::run),
     ("domain_parsers", domain_parsers::run),
     ("mesh_readers", mesh_readers::run),
     ("cdt", cdt::run),
     ("pipeline", pipeline::run),
+    ("point_files", point_files::run),
 ];

@@ -3,6 +3,7 @@
 
 use crate::check::report::Form;
 use crate::check::{CheckOptions, Gate, Id, Metric};
+use crate::delaunay::Engine;
 use crate::draw::View;
 use crate::improve::ImproveOptions;
 use crate::{front, mesher, size};
@@ -61,6 +62,10 @@ pub enum Verb {
     Mesh(Box<MeshArguments>),
     /// Check a mesh exactly, anybody's mesh, with or without its domain.
     Check(Box<CheckArguments>),
+    /// Triangulate points, or points and segments, by Delaunay's criterion.
+    Delaunay(Box<DelaunayArguments>),
+    /// Tessellate the plane by the nearest of some points.
+    Voronoi(VoronoiArguments),
     /// Mesh the NACA 0012 airfoil by three methods and leave meshes, pictures and a report.
     Demo(DemoArguments),
     /// Print the rule behind an id such as D4 or M3; without an id, list all rules.
@@ -267,6 +272,145 @@ pub enum Rules {
     Scored,
     /// The angle decides.
     Hard,
+}
+
+/// `trigrade delaunay`
+#[derive(Clone, Debug, Args)]
+#[command(
+    after_help = "\
+Examples:
+  trigrade delaunay cloud.csv -o cloud.off -o cloud.svg
+  trigrade delaunay cloud.npy --engine sweep --check -o cloud.vtu
+  trigrade delaunay terrain.poly --hull --split-crossings -o terrain.msh
+  trigrade delaunay - --from xyz -o - --form json < cloud.xyz > cloud.json",
+    after_long_help = "\
+The answer is unique (SPEC 5): any engine, any order of the points and any number of threads give
+the same triangles; cocircular points are no exception. Equal points are merged into the first of
+them; --map says what became of each point.
+
+A file with loops or segments (.poly, .json, .geojson, .dat) is triangulated with them as
+constraints, and what the domain's own rule calls outside is removed; --hull keeps it,
+--unconstrained uses the points alone. Segments that cross are an error that names both;
+--split-crossings cuts them where they cross, at points rounded to doubles.
+
+Fewer than three different points, or points on one line, have no triangles: the outputs then hold
+the points alone.
+
+Examples:
+  trigrade delaunay cloud.csv -o cloud.off -o cloud.svg
+  trigrade delaunay cloud.npy --engine sweep --check -o cloud.vtu
+  trigrade delaunay terrain.poly --hull --split-crossings -o terrain.msh
+  trigrade delaunay - --from xyz -o - --form json < cloud.xyz > cloud.json"
+)]
+pub struct DelaunayArguments {
+    /// The points: .node, .csv, .xyz, .npy, .json, .geojson or .poly; `-` is standard input.
+    #[arg(value_name = "POINTS", value_hint = ValueHint::FilePath)]
+    pub points: PathBuf,
+    /// Form of the points, whatever their extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// Where the mesh goes: .off, .msh, .json, .svg, ...; `-` is standard output; repeatable.
+    #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
+    #[arg(required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+    /// The algorithm; all give the same triangles.
+    #[arg(long, value_enum, default_value_t = EngineName::Auto)]
+    pub engine: EngineName,
+    /// With segments: cover the hull of the points, outside and holes too.
+    #[arg(long, conflicts_with = "unconstrained")]
+    pub hull: bool,
+    /// With segments: cut those that cross at their rounded crossings.
+    #[arg(long, conflicts_with = "unconstrained")]
+    pub split_crossings: bool,
+    /// Use the points of the file alone, no loops and no segments.
+    #[arg(long)]
+    pub unconstrained: bool,
+    /// Write what became of each point, as JSON.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub map: Option<PathBuf>,
+    /// Read the mesh back and let `check` judge it: coverage, every point, every circle.
+    #[arg(long)]
+    pub check: bool,
+    /// Print the time of each stage.
+    #[arg(long)]
+    pub timings: bool,
+}
+
+/// `trigrade voronoi`
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trigrade voronoi stations.csv -o cells.json
+  trigrade voronoi stations.csv --clip box -o cells.obj -o cells.svg
+  trigrade voronoi stations.csv --clip 0,0,100,50 -o cells.png
+  trigrade voronoi stations.csv --clip country.geojson -o cells.json
+Places are rounded once to doubles; which cells and edges there are is exact (SPEC 17).")]
+pub struct VoronoiArguments {
+    /// The points: .node, .csv, .xyz, .npy, .json, .geojson or .poly; `-` is standard input.
+    #[arg(value_name = "POINTS", value_hint = ValueHint::FilePath)]
+    pub points: PathBuf,
+    /// Form of the points, whatever their extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+    /// Where it goes: .json, .obj, .svg or .png; `-` is standard output; repeatable.
+    #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
+    #[arg(required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Form of the outputs, whatever their extension (needed for `-o -`).
+    #[arg(long, value_name = "FORM")]
+    pub form: Option<String>,
+    /// Clip the cells: `box` around the points, XMIN,YMIN,XMAX,YMAX, or a domain file.
+    #[arg(long, value_name = "box|X0,Y0,X1,Y1|DOMAIN", allow_hyphen_values = true)]
+    pub clip: Option<String>,
+    /// Form of the domain to clip to, whatever its extension.
+    #[arg(long, value_name = "FORM", requires = "clip")]
+    pub clip_from: Option<String>,
+    /// Print the time of each stage.
+    #[arg(long)]
+    pub timings: bool,
+}
+
+impl VoronoiArguments {
+    /// How the domain to clip to is read.
+    #[must_use]
+    pub fn clip_reading(&self) -> DomainReading {
+        DomainReading { from: self.clip_from.clone(), farfield: None }
+    }
+}
+
+/// `--engine`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EngineName {
+    /// The fastest: divide and conquer over a Morton curve; segments are forced one by one.
+    Auto,
+    /// Insertion by cavities (Watson 1981).
+    Watson,
+    /// Insertion by flips (Lawson 1977).
+    Lawson,
+    /// Triangle by triangle with a uniform grid (Fang and Piegl 1993).
+    FangPiegl,
+    /// Divide and conquer (Guibas and Stolfi 1985); with segments too.
+    DivideConquer,
+    /// Sweep line (Fortune 1987).
+    Sweep,
+}
+
+impl EngineName {
+    /// The same in the library's terms.
+    #[must_use]
+    pub const fn engine(self) -> Engine {
+        match self {
+            Self::Auto => Engine::Auto,
+            Self::Watson => Engine::Watson,
+            Self::Lawson => Engine::Lawson,
+            Self::FangPiegl => Engine::FangPiegl,
+            Self::DivideConquer => Engine::DivideConquer,
+            Self::Sweep => Engine::Sweep,
+        }
+    }
 }
 
 /// `trigrade check`
@@ -626,6 +770,15 @@ mod tests {
             panic!("the verb is mesh");
         };
         assert_eq!(mesh.options.options(), mesher::Options::default());
+    }
+
+    #[test]
+    fn engines_are_called_what_the_library_calls_them() {
+        for name in EngineName::value_variants() {
+            let value = name.to_possible_value().expect("none is hidden");
+            assert_eq!(value.get_name(), name.engine().name());
+        }
+        assert_eq!(EngineName::value_variants().len(), Engine::ALL.len());
     }
 
     #[test]

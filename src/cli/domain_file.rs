@@ -57,7 +57,9 @@ fn form_of(path: &Path, said: Option<&str>) -> Result<DomainForm, Failure> {
     })
 }
 
-fn malformed(name: &str, error: &DomainReadError) -> Failure {
+/// A reader's error as a complaint about the file `name`.
+#[must_use]
+pub fn malformed(name: &str, error: &DomainReadError) -> Failure {
     let diagnostic = Diagnostic::new(error.problem.to_string())
         .rule(error.problem.id())
         .at(place_in(name, &error.place));

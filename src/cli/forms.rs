@@ -16,6 +16,8 @@ pub enum OutputForm {
     Png,
     /// The viewer: one HTML file that needs no network.
     Html,
+    /// A triangulation as JSON; only of verbs that make one of points.
+    Json,
 }
 
 /// Extensions that name a form of mesh, in the order that messages list them.
@@ -122,7 +124,7 @@ pub fn output_files(paths: &[PathBuf], said: Option<&str>) -> Result<Vec<OutputF
         let form = output_form(path, said)?;
         let companions = match form {
             OutputForm::Mesh(form, _) => form.companions(),
-            OutputForm::Svg | OutputForm::Png | OutputForm::Html => &[],
+            OutputForm::Svg | OutputForm::Png | OutputForm::Html | OutputForm::Json => &[],
         };
         if is_dash(path) && !companions.is_empty() {
             let diagnostic = Diagnostic::new("standard output takes one file, this form has more");
@@ -134,6 +136,32 @@ pub fn output_files(paths: &[PathBuf], said: Option<&str>) -> Result<Vec<OutputF
             files.push(OutputFile { path, form, companion: Some(companion) });
         }
         files.push(OutputFile { path: main, form, companion: None });
+    }
+    Ok(files)
+}
+
+/// [`output_files`], where `.json` names a form too.
+///
+/// # Errors
+/// As there.
+pub fn output_files_or_json(
+    paths: &[PathBuf],
+    said: Option<&str>,
+) -> Result<Vec<OutputFile>, Failure> {
+    let is_json = |name: &str| name.eq_ignore_ascii_case("json");
+    let mut files = Vec::new();
+    for path in paths {
+        let extension = path.extension().and_then(|e| e.to_str());
+        match said.or(extension).is_some_and(is_json) {
+            true => {
+                files.push(OutputFile {
+                    path: path.clone(),
+                    form: OutputForm::Json,
+                    companion: None,
+                });
+            }
+            false => files.extend(output_files(std::slice::from_ref(path), said)?),
+        }
     }
     Ok(files)
 }

@@ -164,7 +164,8 @@ fn through_off(meshed: &Meshed) -> Result<MeshData, Failure> {
 }
 
 /// A file that was written and cannot be read back is a fault of this program.
-fn unreadable(name: &str, error: &crate::format::ReadError) -> Failure {
+#[must_use]
+pub fn unreadable(name: &str, error: &crate::format::ReadError) -> Failure {
     let mut failure = malformed(name, error);
     failure.exit = EXIT_FINDINGS;
     failure.diagnostics[0].message.insert_str(0, "the written mesh cannot be read back: ");

@@ -7,6 +7,7 @@ use super::input::load;
 use super::output::Outputs;
 use crate::check::certificate::FileHash;
 use crate::draw::{self, DrawError, Highlight, Layer, Panel, View, Viewer};
+use crate::format::mesh_json;
 use crate::format::{
     At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
     write_companion, write_mesh,
@@ -133,6 +134,7 @@ pub fn write(
             (OutputForm::Mesh(form, options), None) => {
                 write_mesh(mesh, form, options, out).map_err(Refusal::from)
             }
+            (OutputForm::Json, _) => mesh_json::write(mesh, out).map_err(Refusal::from),
             (OutputForm::Svg, _) => drawing
                 .svg()
                 .map_err(Refusal::from)

@@ -4,6 +4,9 @@
 //! of Voronoi diagrams*, 1985, section 9; names are the paper's. Differs from it in one way: only
 //! the origin rings of the quad-edge structure are stored, since the left-face ring follows from
 //! them (`Lnext = Sym Oprev`) and nothing here asks for the dual.
+//!
+//! The subdivision also serves `divide_conquer_cdt.rs`: an edge may carry a segment, and is then
+//! never removed by a merge.
 
 use super::assemble::{from_triangles, sorted_line};
 use crate::point::Point2;
@@ -11,14 +14,17 @@ use crate::predicates::{Sign, incircle_perturbed, orient2d};
 use crate::triangulation::Triangulation;
 
 /// A directed edge; its reverse is `e ^ 1`.
-type Edge = usize;
+pub(super) type Edge = usize;
+
+/// No segment.
+pub(super) const FREE: u32 = u32::MAX;
 
 /// Delaunay triangulation of distinct finite points in lexicographic order.
 pub(crate) fn triangulate(points: &[Point2]) -> Triangulation {
     if points.len() < 2 {
         return Triangulation::default();
     }
-    let mut subdivision = Subdivision { points, edges: Vec::new() };
+    let mut subdivision = Subdivision::new(points);
     subdivision.delaunay(0, points.len());
     let triangles = subdivision.triangles();
     if triangles.is_empty() {
@@ -33,35 +39,60 @@ struct Ring {
     onext: Edge,
     oprev: Edge,
     live: bool,
+    /// The segment that the edge is, or [`FREE`].
+    segment: u32,
 }
 
-struct Subdivision<'a> {
-    points: &'a [Point2],
+pub(super) struct Subdivision<'a> {
+    pub(super) points: &'a [Point2],
     edges: Vec<Ring>,
+    /// For each point an edge out of it, if there is one.
+    outgoing: Vec<Option<Edge>>,
 }
 
-fn sym(e: Edge) -> Edge {
+pub(super) fn sym(e: Edge) -> Edge {
     e ^ 1
 }
 
-impl Subdivision<'_> {
-    fn org(&self, e: Edge) -> u32 {
+impl<'a> Subdivision<'a> {
+    pub(super) fn new(points: &'a [Point2]) -> Self {
+        Self { points, edges: Vec::new(), outgoing: vec![None; points.len()] }
+    }
+
+    /// An edge out of a point that has one.
+    pub(super) fn out_of(&self, v: u32) -> Edge {
+        self.outgoing[v as usize].expect("the point has an edge")
+    }
+
+    /// The segment that the edge is, or [`FREE`].
+    pub(super) fn segment(&self, e: Edge) -> u32 {
+        self.edges[e].segment
+    }
+
+    /// Lets the edge be a segment, on both sides.
+    pub(super) fn set_segment(&mut self, e: Edge, segment: u32) {
+        for side in [e, sym(e)] {
+            self.edges[side].segment = segment;
+        }
+    }
+
+    pub(super) fn org(&self, e: Edge) -> u32 {
         self.edges[e].origin
     }
 
-    fn dest(&self, e: Edge) -> u32 {
+    pub(super) fn dest(&self, e: Edge) -> u32 {
         self.edges[sym(e)].origin
     }
 
-    fn onext(&self, e: Edge) -> Edge {
+    pub(super) fn onext(&self, e: Edge) -> Edge {
         self.edges[e].onext
     }
 
-    fn oprev(&self, e: Edge) -> Edge {
+    pub(super) fn oprev(&self, e: Edge) -> Edge {
         self.edges[e].oprev
     }
 
-    fn lnext(&self, e: Edge) -> Edge {
+    pub(super) fn lnext(&self, e: Edge) -> Edge {
         self.oprev(sym(e))
     }
 
@@ -69,10 +100,13 @@ impl Subdivision<'_> {
         self.onext(sym(e))
     }
 
-    fn make_edge(&mut self, a: u32, b: u32) -> Edge {
+    pub(super) fn make_edge(&mut self, a: u32, b: u32) -> Edge {
         let e = self.edges.len();
-        self.edges.push(Ring { origin: a, onext: e, oprev: e, live: true });
-        self.edges.push(Ring { origin: b, onext: e + 1, oprev: e + 1, live: true });
+        for (origin, side) in [(a, e), (b, e + 1)] {
+            let ring = Ring { origin, onext: side, oprev: side, live: true, segment: FREE };
+            self.edges.push(ring);
+            self.outgoing[origin as usize] = Some(side);
+        }
         e
     }
 
@@ -86,21 +120,23 @@ impl Subdivision<'_> {
     }
 
     /// A new edge from the end of `a` to the start of `b`, in the same left face.
-    fn connect(&mut self, a: Edge, b: Edge) -> Edge {
+    pub(super) fn connect(&mut self, a: Edge, b: Edge) -> Edge {
         let e = self.make_edge(self.dest(a), self.org(b));
         self.splice(e, self.lnext(a));
         self.splice(sym(e), b);
         e
     }
 
-    fn delete(&mut self, e: Edge) {
+    pub(super) fn delete(&mut self, e: Edge) {
         for side in [e, sym(e)] {
+            let (origin, next) = (self.org(side), self.onext(side));
+            self.outgoing[origin as usize] = (next != side).then_some(next);
             self.splice(side, self.oprev(side));
             self.edges[side].live = false;
         }
     }
 
-    fn at(&self, v: u32) -> Point2 {
+    pub(super) fn at(&self, v: u32) -> Point2 {
         self.points[v as usize]
     }
 
@@ -120,10 +156,7 @@ impl Subdivision<'_> {
     /// point and the clockwise one out of the rightmost.
     fn delaunay(&mut self, low: usize, high: usize) -> (Edge, Edge) {
         match high - low {
-            2 => {
-                let e = self.make_edge(low as u32, low as u32 + 1);
-                (e, sym(e))
-            }
+            2 => self.two(low as u32),
             3 => self.three(low as u32),
             _ => {
                 let middle = low.midpoint(high);
@@ -134,7 +167,12 @@ impl Subdivision<'_> {
         }
     }
 
-    fn three(&mut self, first: u32) -> (Edge, Edge) {
+    pub(super) fn two(&mut self, first: u32) -> (Edge, Edge) {
+        let e = self.make_edge(first, first + 1);
+        (e, sym(e))
+    }
+
+    pub(super) fn three(&mut self, first: u32) -> (Edge, Edge) {
         let [s1, s2, s3] = [first, first + 1, first + 2];
         let (a, b) = (self.make_edge(s1, s2), self.make_edge(s2, s3));
         self.splice(sym(a), b);
@@ -151,7 +189,7 @@ impl Subdivision<'_> {
         }
     }
 
-    fn merge(
+    pub(super) fn merge(
         &mut self,
         (mut ldo, mut ldi): (Edge, Edge),
         (mut rdi, mut rdo): (Edge, Edge),
@@ -183,10 +221,15 @@ impl Subdivision<'_> {
     /// upper common tangent.
     fn rise(&mut self, basel: Edge) -> Option<Edge> {
         let valid = |s: &Self, e: Edge| s.right_of(s.dest(e), basel);
+        // With segments a vertex below the base may lie in the circle, hidden: only a triangle above
+        // the base gives way.
         let ends = [self.dest(basel), self.org(basel)];
         let mut lcand = self.onext(sym(basel));
         if valid(self, lcand) {
-            while self.in_circle([ends[0], ends[1], self.dest(lcand)], self.dest(self.onext(lcand)))
+            while self.segment(lcand) == FREE
+                && valid(self, self.onext(lcand))
+                && self
+                    .in_circle([ends[0], ends[1], self.dest(lcand)], self.dest(self.onext(lcand)))
             {
                 let next = self.onext(lcand);
                 self.delete(lcand);
@@ -195,7 +238,10 @@ impl Subdivision<'_> {
         }
         let mut rcand = self.oprev(basel);
         if valid(self, rcand) {
-            while self.in_circle([ends[0], ends[1], self.dest(rcand)], self.dest(self.oprev(rcand)))
+            while self.segment(rcand) == FREE
+                && valid(self, self.oprev(rcand))
+                && self
+                    .in_circle([ends[0], ends[1], self.dest(rcand)], self.dest(self.oprev(rcand)))
             {
                 let next = self.oprev(rcand);
                 self.delete(rcand);
@@ -215,7 +261,7 @@ impl Subdivision<'_> {
     }
 
     /// The counterclockwise faces of three edges.
-    fn triangles(&self) -> Vec<[u32; 3]> {
+    pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
         for e in (0..self.edges.len()).filter(|&e| self.edges[e].live) {
             let (f, g) = (self.lnext(e), self.lnext(self.lnext(e)));

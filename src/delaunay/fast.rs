@@ -25,8 +25,10 @@ const PARALLEL_MIN: usize = 1 << 14;
 
 /// Triangulates finite points; equal ones are merged.
 pub(crate) fn triangulate(points: &[Point2], parallel: bool) -> Delaunay {
-    let Sorted { points, index, repeated, lattice } = morton_sort(points);
+    let Sorted { index, repeated, lattice } = morton_sort(points);
     let mut triangulation = Triangulation::unfinished(index);
+    // Only now, when the indices have gone into the slots: at no time are both lists there.
+    let points: Vec<Point2> = triangulation.names().map(|name| points[name as usize]).collect();
     if points.len() > 1 {
         let job = Job { points: &points, lattice, parallel };
         job.build(&mut triangulation.arena(), 0, points.len());

@@ -131,9 +131,7 @@ fn spread(v: u32) -> u64 {
 
 /// Distinct points along the Morton curve.
 pub(crate) struct Sorted {
-    /// The points; those of one cell in lexicographic order.
-    pub(crate) points: Vec<Point2>,
-    /// Index in the input of each, the lowest among equals.
+    /// Indices in the input, the lowest among equals; points of one cell in lexicographic order.
     pub(crate) index: Vec<u32>,
     /// (dropped, kept): input indices of repeated points.
     pub(crate) repeated: Vec<[u32; 2]>,
@@ -149,12 +147,9 @@ pub(crate) fn morton_sort(points: &[Point2]) -> Sorted {
     let mut keyed: Vec<[u32; 2]> = points.iter().zip(0..).map(|(&p, i)| [key(p), i]).collect();
     radix_sort(&mut keyed);
     sort_ties(&mut keyed, points, &lattice);
-    let index: Vec<u32> = keyed.iter().map(|&[_, i]| i).collect();
-    drop(keyed);
-    let sorted = index.iter().map(|&i| points[i as usize]).collect();
-    let mut sorted = Sorted { points: sorted, index, repeated: Vec::new(), lattice };
-    merge_equal(&mut sorted);
-    sorted
+    let repeated = merge_equal(&mut keyed, points);
+    let index = keyed.into_iter().map(|[_, i]| i).collect();
+    Sorted { index, repeated, lattice }
 }
 
 const DIGIT_BITS: u32 = 11;
@@ -198,19 +193,17 @@ fn sort_ties(items: &mut [[u32; 2]], points: &[Point2], lattice: &Lattice) {
     }
 }
 
-/// Drops all but the first of equal neighbours.
-fn merge_equal(sorted: &mut Sorted) {
-    let mut kept = 0;
-    for i in 0..sorted.points.len() {
-        if i > 0 && sorted.points[kept - 1] == sorted.points[i] {
-            sorted.repeated.push([sorted.index[i], sorted.index[kept - 1]]);
-            continue;
+/// Drops all but the first of equal neighbours, which have equal keys; `[dropped, kept]` of each.
+fn merge_equal(items: &mut Vec<[u32; 2]>, points: &[Point2]) -> Vec<[u32; 2]> {
+    let mut repeated = Vec::new();
+    items.dedup_by(|later, first| {
+        let is_equal =
+            later[0] == first[0] && points[later[1] as usize] == points[first[1] as usize];
+        if is_equal {
+            repeated.push([later[1], first[1]]);
         }
-        sorted.points[kept] = sorted.points[i];
-        sorted.index[kept] = sorted.index[i];
-        kept += 1;
-    }
-    sorted.repeated.sort_unstable();
-    sorted.points.truncate(kept);
-    sorted.index.truncate(kept);
+        is_equal
+    });
+    repeated.sort_unstable();
+    repeated
 }

@@ -29,6 +29,9 @@ pub struct Split {
     pub segments: Vec<[u32; 2]>,
     /// For each piece the lowest of the given segments that it is part of.
     pub parents: Vec<u32>,
+    /// `[piece, segment]` for every given segment that a piece is part of, sorted: overlapping
+    /// segments share pieces.
+    pub covered: Vec<[u32; 2]>,
 }
 
 /// Cuts segments where they cross, overlap or pass through points, until they meet at common ends
@@ -41,6 +44,34 @@ pub struct Split {
 /// # Complexity
 /// As [`cdt`](super::cdt), for the pieces.
 pub fn split_crossings(points: &[Point2], segments: &[[u32; 2]]) -> Result<Split, CdtError> {
+    split(points, segments, Crossings::Cut)
+}
+
+/// Cuts segments at the points that lie inside them, exactly, so that segments that overlap share
+/// pieces. No point is added and nothing is rounded.
+///
+/// # Errors
+/// See [`CdtError`]: unsound points or indices; or [`CdtError::Crossing`] with two given segments
+/// that cross where there is no point.
+///
+/// # Complexity
+/// As [`cdt`](super::cdt), for the pieces.
+pub fn split_at_points(points: &[Point2], segments: &[[u32; 2]]) -> Result<Split, CdtError> {
+    split(points, segments, Crossings::Refuse)
+}
+
+/// What becomes of two segments that cross.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Crossings {
+    Cut,
+    Refuse,
+}
+
+fn split(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    crossings: Crossings,
+) -> Result<Split, CdtError> {
     check_segments(points.len(), segments)?;
     let Delaunay { triangulation, repeated } = delaunay(points, Options::default())?;
     if let Some(&[second, first]) = repeated.first() {
@@ -56,7 +87,10 @@ pub fn split_crossings(points: &[Point2], segments: &[[u32; 2]]) -> Result<Split
     };
     for _ in 0..steps_max(points.len(), segments.len()) {
         let Some(piece) = splitter.todo.pop() else { return Ok(splitter.finish()) };
-        splitter.force(piece);
+        match crossings {
+            Crossings::Cut => splitter.force(piece),
+            Crossings::Refuse => splitter.force_exactly(piece)?,
+        }
     }
     match splitter.todo.last() {
         Some(piece) => Err(CdtError::Tangled { segment: piece.parent }),
@@ -83,8 +117,8 @@ struct Splitter {
     points: Vec<Point2>,
     outgoing: Vec<Option<HalfEdgeId>>,
     todo: Vec<Piece>,
-    /// Parent of each edge that is constrained now, by its sorted ends.
-    done: BTreeMap<[u32; 2], u32>,
+    /// Parents of each edge that is constrained now, by its sorted ends.
+    done: BTreeMap<[u32; 2], Vec<u32>>,
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
@@ -93,8 +127,15 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
 
 impl Splitter {
     fn finish(self) -> Split {
-        let (segments, parents) = self.done.into_iter().unzip();
-        Split { points: self.points, segments, parents }
+        let mut split = Split { points: self.points, ..Split::default() };
+        for ((piece, mut parents), i) in self.done.into_iter().zip(0..) {
+            parents.sort_unstable();
+            parents.dedup();
+            split.segments.push(piece);
+            split.parents.push(parents[0]);
+            split.covered.extend(parents.into_iter().map(|parent| [i, parent]));
+        }
+        split
     }
 
     /// A half-edge out of `v`; entries go stale where flips have been.
@@ -138,8 +179,29 @@ impl Splitter {
         }
         let done = self.triangulation.force_segment(&self.points, from, to, &mut self.outgoing);
         debug_assert!(done.is_ok(), "the way was clear");
-        let known = self.done.entry(sorted(ends)).or_insert(parent);
-        *known = parent.min(*known);
+        self.done.entry(sorted(ends)).or_default().push(parent);
+    }
+
+    /// Forces a piece as it stands, led through points inside it.
+    fn force_exactly(&mut self, Piece { ends, parent }: Piece) -> Result<(), CdtError> {
+        let [a, b] = ends;
+        let (from, to) = (self.out_of(a), VertexId(b));
+        match self.triangulation.force_segment(&self.points, from, to, &mut self.outgoing) {
+            Ok(_) => self.done.entry(sorted(ends)).or_default().push(parent),
+            Err(Obstacle::Through(e)) => {
+                let v = self.triangulation.origin(e).0;
+                self.queue([a, v], parent);
+                self.queue([v, b], parent);
+            }
+            Err(Obstacle::Crosses(e)) => {
+                let [c, d] = [self.triangulation.origin(e).0, self.triangulation.dest(e).0];
+                let other = self.done[&sorted([c, d])][0];
+                let (first, second) = (parent.min(other), parent.max(other));
+                return Err(CdtError::Crossing { first, second });
+            }
+            Err(Obstacle::Leaves(_)) => unreachable!("a segment lies in the hull of its ends"),
+        }
+        Ok(())
     }
 
     /// The first of some vertices that the piece passes within the distance of neighbouring floats.
@@ -160,18 +222,23 @@ impl Splitter {
         let [c, d] = [self.triangulation.origin(e).0, self.triangulation.dest(e).0];
         let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.points[v as usize]);
         let at = rounded_crossing(pa, pb, pc, pd).expect("the walk met a proper crossing");
-        let other = self.done.remove(&sorted([c, d])).expect("constrained edges are done");
+        let others = self.done.remove(&sorted([c, d])).expect("constrained edges are done");
         self.release(e);
-        if let Some(v) = self.hot([c, d], &[VertexId(a), VertexId(b)]) {
-            self.queue([a, b], parent);
+        let v = match self.hot([c, d], &[VertexId(a), VertexId(b)]) {
+            Some(v) => {
+                self.queue([a, b], parent);
+                v
+            }
+            None => {
+                let v = self.vertex_at(at, e);
+                self.queue([a, v], parent);
+                self.queue([v, b], parent);
+                v
+            }
+        };
+        for other in others {
             self.queue([c, v], other);
             self.queue([v, d], other);
-            return;
-        }
-        let v = self.vertex_at(at, e);
-        for (ends, parent) in [([a, v], parent), ([v, b], parent), ([c, v], other), ([v, d], other)]
-        {
-            self.queue(ends, parent);
         }
     }
 
@@ -206,9 +273,9 @@ impl Splitter {
     /// A crossing fell on a constrained edge: it is to be forced again, in pieces.
     fn open(&mut self, e: HalfEdgeId) {
         let ends = [self.triangulation.origin(e).0, self.triangulation.dest(e).0];
-        if let Some(parent) = self.done.remove(&sorted(ends)) {
+        if let Some(parents) = self.done.remove(&sorted(ends)) {
             self.release(e);
-            self.queue(ends, parent);
+            parents.into_iter().for_each(|parent| self.queue(ends, parent));
         }
     }
 }

@@ -34,6 +34,12 @@ impl View {
             .map(Self::widened)
     }
 
+    /// The rectangle around finite points, widened if it is flat; the unit square without a point.
+    pub(super) fn around_points(points: &[crate::point::Point2]) -> Self {
+        let unit = Self { x0: 0.0, y0: 0.0, x1: 1.0, y1: 1.0 };
+        Self::around(points.iter().map(|p| [p.x, p.y, 0.0])).map_or(unit, Self::widened)
+    }
+
     fn around(points: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
         points.filter(|p| p[0].is_finite() && p[1].is_finite()).fold(None, |view, [x, y, _]| {
             let v = view.unwrap_or(Self { x0: x, y0: y, x1: x, y1: y });

@@ -8,12 +8,21 @@ use std::sync::Arc;
 /// Draws a page; the font is built in, so the machine's fonts play no part.
 pub fn png(page: &Page<'_>, options: &Options) -> Result<Vec<u8>, DrawError> {
     let tree = usvg::Tree::from_str(&page.svg(), &parser_options()).map_err(reason)?;
-    let scale = options.png_scale;
-    let [width, height] = [options.width, page.height].map(|x| (x * f64::from(scale)).ceil());
+    draw(&tree, [options.width, page.height], options.png_scale)
+}
+
+/// Draws an SVG document that says its size.
+pub fn rasterise(svg: &str, scale: f32) -> Result<Vec<u8>, DrawError> {
+    let tree = usvg::Tree::from_str(svg, &parser_options()).map_err(reason)?;
+    draw(&tree, [tree.size().width(), tree.size().height()].map(f64::from), scale)
+}
+
+fn draw(tree: &usvg::Tree, size: [f64; 2], scale: f32) -> Result<Vec<u8>, DrawError> {
+    let [width, height] = size.map(|x| (x * f64::from(scale)).ceil());
     let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32)
         .ok_or_else(|| reason(format!("{width} x {height} dots do not fit memory")))?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
-    resvg::render(&tree, transform, &mut pixmap.as_mut());
+    resvg::render(tree, transform, &mut pixmap.as_mut());
     pixmap.encode_png().map_err(reason)
 }
 

@@ -132,7 +132,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    fn number(self) -> Read<f64> {
+    pub fn number(self) -> Read<f64> {
         self.value.as_f64().ok_or_else(|| self.expected("a number"))
     }
 

@@ -46,6 +46,21 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
     mesh.finish(&node)
 }
 
+/// Reads the points of a `.node` file.
+///
+/// # Errors
+/// The first fault with its line.
+pub(crate) fn read_points(bytes: &[u8]) -> Result<MeshData, ReadError> {
+    let mut node = scan(bytes);
+    let mut mesh = Assembler::new(1, false);
+    read_nodes(&mut node, &mut mesh)?;
+    if !node.is_at_end() {
+        let token = node.peek();
+        return Err(node.malformed("the end of the file after the last point", token));
+    }
+    mesh.finish(&node)
+}
+
 /// Fails unless nothing is left on the line.
 fn end_line(scanner: &mut Scanner, expected: &str) -> Result<(), ReadError> {
     match scanner.token_on_line() {

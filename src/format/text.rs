@@ -54,6 +54,12 @@ impl<'a> TextOut<'a> {
         self.bytes(&[end])
     }
 
+    /// Appends a finite number as JSON and Rust read it back to the same bits, -0.0 included.
+    pub(crate) fn number(&mut self, value: f64) -> io::Result<()> {
+        let mut digits = zmij::Buffer::new();
+        self.bytes(digits.format_finite(value).as_bytes())
+    }
+
     /// Appends the shortest decimal that reads back to the same bits, and `end`. Infinities and
     /// NaN become `inf`, `-inf` and `nan`, which C, Fortran, Python and Rust read.
     #[inline]

@@ -44,17 +44,31 @@ fn guess(a: Point2, b: Point2, c: Point2, d: Point2) -> Point2 {
     Point2::new(a.x + along * (b.x - a.x), a.y + along * (b.y - a.y))
 }
 
-#[derive(Clone, Copy)]
-enum Axis {
+/// One of the two coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The abscissa.
     X,
+    /// The ordinate.
     Y,
 }
 
 impl Axis {
-    fn of(self, p: Point2) -> f64 {
+    /// The coordinate of a point.
+    #[must_use]
+    pub const fn of(self, p: Point2) -> f64 {
         match self {
             Self::X => p.x,
             Self::Y => p.y,
+        }
+    }
+
+    /// The other axis.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::X => Self::Y,
+            Self::Y => Self::X,
         }
     }
 
@@ -131,6 +145,19 @@ fn round_to_nearest(bounds: [f64; 2], guess: f64, compare: impl Fn(Factor) -> Si
         }
     }
     nearer_neighbour(low, high, compare)
+}
+
+/// The float nearest to a number that is known by comparison only, ties to even; the largest float,
+/// with the number's sign, for a number beyond it.
+pub(super) fn rounded_by(guess: f64, compare: impl Fn(Factor) -> Sign) -> f64 {
+    if compare(Factor::of(f64::MAX)) != Sign::Negative {
+        return f64::MAX;
+    }
+    if compare(Factor::of(f64::MIN)) != Sign::Positive {
+        return f64::MIN;
+    }
+    let guess = if guess.is_nan() { 0.0 } else { guess };
+    round_to_nearest([f64::MIN, f64::MAX], guess, compare) + 0.0
 }
 
 /// How many floats a good guess may be off.

@@ -48,6 +48,11 @@ impl Factor {
         Self { negative: bits >> 63 == 1, significand: fraction | hidden, exponent: biased.max(1) }
     }
 
+    /// Twice the number; at most one factor of a product may be one.
+    pub(super) fn doubled(self) -> Self {
+        Self { exponent: self.exponent + 1, ..self }
+    }
+
     /// Halfway from the float to its neighbour away from zero, on the side of its sign bit.
     pub(super) fn half_step_beyond(value: f64) -> Self {
         let Self { negative, significand, exponent } = Self::of(value);

@@ -25,6 +25,11 @@ impl Triangulation {
         Self { slots, free: Vec::new() }
     }
 
+    /// The names that wait in the scratch words.
+    pub(crate) fn names(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.slots.iter().step_by(2).map(|slot| slot.words[MARK])
+    }
+
     /// All slots as an arena.
     pub(crate) fn arena(&mut self) -> Arena<'_> {
         Arena { slots: &mut self.slots, base: 0 }

@@ -4,7 +4,7 @@ use crate::clouds::{self, Random};
 use crate::naive::{self, finite_triangles};
 use spade::Triangulation as _;
 use std::collections::BTreeSet;
-use trigrade::delaunay::{Cdt, CdtError, PointsError, cdt};
+use trigrade::delaunay::{Cdt, CdtError, Engine, Options, PointsError, cdt, cdt_with};
 use trigrade::point::Point2;
 use trigrade::predicates::{Sign, orient2d};
 use trigrade::triangulation::locate::Location;
@@ -14,8 +14,24 @@ fn p(x: f64, y: f64) -> Point2 {
     Point2::new(x, y)
 }
 
+/// By divide and conquer.
+fn halved(points: &[Point2], segments: &[[u32; 2]]) -> Result<Cdt, CdtError> {
+    let options = Options { engine: Engine::DivideConquer, ..Options::default() };
+    cdt_with(points, segments, options)
+}
+
+/// What both ways to a constrained triangulation agree on.
 fn sound(points: &[Point2], segments: &[[u32; 2]]) -> Cdt {
     let result = cdt(points, segments).expect("a sound input");
+    verified(points, segments, &result);
+    let other = halved(points, segments).expect("a sound input");
+    verified(points, segments, &other);
+    let [one, two] = [&result, &other].map(|cdt| finite_triangles(&cdt.triangulation));
+    assert_eq!(one, two, "{points:?} {segments:?}");
+    result
+}
+
+fn verified(points: &[Point2], segments: &[[u32; 2]], result: &Cdt) {
     result.triangulation.verify_geometry(points).expect("a constrained Delaunay triangulation");
     for (&[a, b], &e) in segments.iter().zip(&result.segments) {
         let ends = [result.triangulation.origin(e), result.triangulation.dest(e)];
@@ -25,7 +41,6 @@ fn sound(points: &[Point2], segments: &[[u32; 2]]) -> Cdt {
     for (v, e) in result.outgoing.iter().enumerate() {
         assert!(points.len() < 2 || result.triangulation.origin(e.unwrap()).index() == v);
     }
-    result
 }
 
 fn edges(triangulation: &Triangulation) -> BTreeSet<[u32; 2]> {
@@ -39,7 +54,7 @@ fn lattice(side: u32, subset: u32) -> Vec<Point2> {
     cells.map(|i| p(f64::from(i % side), f64::from(i / side))).collect()
 }
 
-// spec: T1
+// spec: T1 L5
 #[test]
 fn every_subset_of_the_four_by_four_lattice() {
     for subset in 0..1 << 16 {
@@ -73,7 +88,7 @@ fn through(points: &[Point2], [a, b]: [u32; 2]) -> bool {
     })
 }
 
-// spec: T3 T4
+// spec: T3 T4 L5
 #[test]
 fn every_two_segments_of_the_four_by_four_lattice() {
     let points = lattice(4, 0xffff);
@@ -89,8 +104,10 @@ fn every_two_segments_of_the_four_by_four_lattice() {
                 }
                 Err(CdtError::Crossing { first: 0, second: 1 }) => {
                     assert!(meet(&points, first, second), "{first:?} {second:?}");
+                    assert!(halved(&points, &[first, second]).is_err());
                 }
                 Err(CdtError::Through { segment, vertex, point }) => {
+                    assert!(halved(&points, &[first, second]).is_err());
                     assert!(through(&points, [first, second][segment as usize]));
                     assert_eq!(points[vertex as usize], point);
                 }
@@ -197,6 +214,73 @@ fn answers_for_few_points_and_lines() {
     let line = clouds::line(10);
     let segments: Vec<[u32; 2]> = (0..9).map(|i| [i, i + 1]).collect();
     assert_eq!(sound(&line, &segments).triangulation.live_count(), 18);
+}
+
+// spec: L5
+#[test]
+fn both_ways_agree_on_segments_across_hard_clouds() {
+    for n in [3, 10, 60, 300] {
+        for (name, points) in clouds::all(n) {
+            for seed in 0..3 {
+                let segments = random_segments(&points, 2 * n, seed);
+                assert!(n < 10 || name == "line" || !segments.is_empty(), "{name}");
+                sound(&points, &segments);
+            }
+        }
+    }
+}
+
+// spec: L5
+#[test]
+fn both_ways_agree_on_combs_spirals_and_stars() {
+    // Teeth that a single long segment passes beside, and a spiral wall.
+    let mut points = vec![p(-1.0, 0.5), p(400.0, 0.5 + 1e-9)];
+    let mut segments = vec![[0, 1]];
+    for i in 0..200 {
+        let v = points.len() as u32;
+        points.extend([p(f64::from(i), 1.0), p(f64::from(i) + 0.5, 90.0), p(f64::from(i), -1.0)]);
+        segments.extend([[v, v + 1], [v + 1, v + 3]]);
+    }
+    segments.pop();
+    sound(&points, &segments);
+    let spiral = clouds::spiral(2000);
+    let wall: Vec<[u32; 2]> = (1..2000).map(|i| [i - 1, i]).collect();
+    sound(&spiral, &wall);
+    let mut star = clouds::circle(400);
+    star.push(p(0.0, 0.0));
+    let rays: Vec<[u32; 2]> = (0..400).step_by(3).map(|i| [i, 400]).collect();
+    sound(&clouds::distinct(star), &rays);
+}
+
+// spec: L5
+#[test]
+fn both_ways_refuse_the_same_input() {
+    let square = [p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)];
+    let crossing = CdtError::Crossing { first: 0, second: 1 };
+    assert_eq!(halved(&square, &[[0, 2], [1, 3]]).err(), Some(crossing));
+    let line = clouds::line(9);
+    for segment in [[0, 2], [8, 0], [3, 5]] {
+        let Err(CdtError::Through { segment: 0, vertex, point }) = halved(&line, &[segment]) else {
+            panic!("{segment:?} passes through points");
+        };
+        assert_eq!(line[vertex as usize], point);
+    }
+    assert!(matches!(halved(&square, &[[0, 4]]), Err(CdtError::BadSegment { .. })));
+    let twice = [square[0], square[1], square[0]];
+    assert!(matches!(halved(&twice, &[]), Err(CdtError::Duplicate { first: 0, second: 2, .. })));
+    let nan = [p(f64::NAN, 0.0)];
+    assert!(matches!(halved(&nan, &[]), Err(CdtError::Points(_))));
+    for engine in [Engine::Watson, Engine::Lawson, Engine::FangPiegl, Engine::Sweep] {
+        let options = Options { engine, ..Options::default() };
+        let error = cdt_with(&square, &[], options).err();
+        assert_eq!(error, Some(CdtError::Unconstrained(engine.name())));
+    }
+    for few in [&[][..], &[p(1.0, 1.0)], &square[..2]] {
+        assert_eq!(
+            halved(few, &[]).unwrap().triangulation.live_count(),
+            if few.len() == 2 { 2 } else { 0 }
+        );
+    }
 }
 
 // spec: T4

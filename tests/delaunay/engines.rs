@@ -44,6 +44,36 @@ fn engines_agree_on_the_cocircular_3600() {
     }
 }
 
+/// Every engine on 100,000 points of each cloud and on grids of a million, but on 20,000 of the axis
+/// cross, where each point inserted along a curve sees all before it; Fang and Piegl's, which is
+/// quadratic where the grid does not spread the points, where it does. With spade on the clouds
+/// that have no ties and no extreme coordinates. Some minutes: `-- --ignored large`.
+// spec: L1 L2
+#[test]
+#[ignore = "minutes"]
+fn engines_agree_on_large_clouds() {
+    let mut large = clouds::all(100_000);
+    large.push(("grid of a million", clouds::grid(1000, 1.0)));
+    large.push(("grid of a million times 0.1", clouds::grid(1000, 0.1)));
+    for (name, mut points) in large {
+        if name == "axis cross" {
+            points.truncate(20_000);
+        }
+        let first = with(Engine::Auto, &points);
+        first.triangulation.verify_geometry(&points).expect(name);
+        let triangles = first.triangles();
+        let is_spread = name == "uniform" || name.contains("grid");
+        let engines = Engine::ALL.into_iter().skip(1);
+        for engine in engines.filter(|&e| e != Engine::FangPiegl || is_spread) {
+            assert!(with(engine, &points).triangles() == triangles, "{name} {}", engine.name());
+        }
+        if ["uniform", "clusters"].contains(&name) {
+            assert!(by_spade(&points) == triangles, "{name} by spade");
+        }
+        println!("{name}: {} points, {} triangles", points.len(), triangles.len());
+    }
+}
+
 /// Integer points on one circle: exactly cocircular, in number theory's gift.
 fn lattice_circle(r: i64) -> Vec<Point2> {
     let on = |&(x, y): &(i64, i64)| x * x + y * y == r * r;
@@ -174,16 +204,18 @@ fn engines_have_names() {
 fn agrees_with_spade_where_the_answer_is_unique() {
     for seed in 0..20 {
         let points = clouds::uniform(500, seed);
-        let vertices = points.iter().map(|p| spade::Point2::new(p.x, p.y)).collect();
-        let theirs = spade::DelaunayTriangulation::<spade::Point2<f64>>::bulk_load_stable(vertices);
-        let mut expected: Vec<_> = theirs
-            .unwrap()
-            .inner_faces()
-            .map(|f| canonical(f.vertices().map(|v| v.fix().index() as u32)))
-            .collect();
-        expected.sort_unstable();
-        assert_eq!(with(Engine::Auto, &points).triangles(), expected);
+        assert_eq!(with(Engine::Auto, &points).triangles(), by_spade(&points));
     }
+}
+
+fn by_spade(points: &[Point2]) -> naive::Triangles {
+    let vertices = points.iter().map(|p| spade::Point2::new(p.x, p.y)).collect();
+    let theirs = spade::DelaunayTriangulation::<spade::Point2<f64>>::bulk_load_stable(vertices);
+    let faces = theirs.expect("points in spade's range");
+    let corners = faces.inner_faces().map(|f| f.vertices().map(|v| v.fix().index() as u32));
+    let mut triangles: naive::Triangles = corners.map(canonical).collect();
+    triangles.sort_unstable();
+    triangles
 }
 
 /// Coordinates with many coincidences: small integers, powers of two, ulps and extremes.

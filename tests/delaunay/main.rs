@@ -6,3 +6,5 @@ mod clouds;
 mod engines;
 mod naive;
 mod split;
+mod triangulate;
+mod voronoi;

@@ -1,7 +1,7 @@
 //! Segments cut at their crossings.
 
 use crate::clouds::{self, Random};
-use trigrade::delaunay::{CdtError, Split, cdt, split_crossings};
+use trigrade::delaunay::{CdtError, Split, cdt, split_at_points, split_crossings};
 use trigrade::point::Point2;
 
 fn p(x: f64, y: f64) -> Point2 {
@@ -43,6 +43,37 @@ fn overlaps_and_points_on_segments_are_cut_at_the_points() {
     assert_eq!(found.points, line);
     assert_eq!(found.segments, [[0, 1], [1, 2], [2, 3], [3, 4]]);
     assert_eq!(found.parents, [0, 0, 0, 1]);
+    assert_eq!(found.covered, [[0, 0], [1, 0], [1, 1], [2, 0], [2, 1], [3, 1]]);
+}
+
+// spec: T10
+#[test]
+fn segments_are_cut_at_the_points_inside_them_and_nowhere_else() {
+    let line: Vec<_> = (0..5).map(|i| p(0.1 * f64::from(i), 0.0)).collect();
+    let found = split_at_points(&line, &[[0, 3], [4, 1]]).unwrap();
+    assert_eq!((found.points, found.segments), (line, vec![[0, 1], [1, 2], [2, 3], [3, 4]]));
+    let grid: Vec<_> = (0..49).map(|i| p(f64::from(i % 7), f64::from(i / 7))).collect();
+    // Rows, columns and diagonals through the points; diagonals one way only.
+    let segments: Vec<[u32; 2]> = (0..7)
+        .flat_map(|i| [[7 * i, 7 * i + 6], [i, 42 + i], [i, 7 * i]])
+        .filter(|s| s[0] != s[1])
+        .collect();
+    let found = split_at_points(&grid, &segments).unwrap();
+    assert_eq!(found.points, grid);
+    let exact = split_crossings(&grid, &segments).unwrap();
+    assert_eq!((found.segments, found.covered), (exact.segments, exact.covered));
+}
+
+// spec: T10 !T10
+#[test]
+fn segments_that_cross_where_there_is_no_point_are_named() {
+    let square = [p(0.0, 0.0), p(2.0, 0.0), p(2.0, 2.0), p(0.0, 2.0), p(1.0, 1.0)];
+    assert!(split_at_points(&square, &[[0, 2], [1, 3]]).is_ok());
+    let error = split_at_points(&square[..4], &[[0, 1], [2, 0], [1, 3]]).unwrap_err();
+    assert_eq!(error, CdtError::Crossing { first: 1, second: 2 });
+    // The piece that is crossed belongs to a segment given twice: the first is named.
+    let error = split_at_points(&square[..4], &[[0, 2], [2, 0], [1, 3]]).unwrap_err();
+    assert!(matches!(error, CdtError::Crossing { second: 2, .. }));
 }
 
 // spec: T9
@@ -102,6 +133,7 @@ fn nothing_to_cut_changes_nothing() {
     let points = clouds::uniform(5, 3);
     let found = split(&points, &[[3, 0], [0, 3]]);
     assert_eq!((found.points, found.segments, found.parents), (points, vec![[0, 3]], vec![0]));
+    assert_eq!(found.covered, [[0, 0], [0, 1]]);
     assert_eq!(split(&[], &[]), Split::default());
 }
 
