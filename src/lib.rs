@@ -19,7 +19,9 @@ pub mod front;
 pub mod improve;
 pub mod mesher;
 pub mod predicates;
+pub mod refine;
 pub mod size;
+pub mod subdivide;
 pub mod triangulation;
 
 pub mod domain;
