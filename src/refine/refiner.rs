@@ -67,7 +67,7 @@ impl<'a> Refiner<'a> {
             hints: Vec::new(),
             pieces,
             region_doubled: region_areas(background),
-            bounds: Bounds::new(options.angle_min_deg),
+            bounds: Bounds::new(options.angle_min_deg, options.split_boundary),
             options,
             queue: Queue::default(),
             encroached: Vec::new(),
