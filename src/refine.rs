@@ -17,6 +17,8 @@ mod pieces;
 mod queue;
 mod refiner;
 
+pub(crate) use pieces::SEGMENT_MIN;
+
 use crate::background::Background;
 use crate::point::Point2;
 use crate::size::SizeField;

@@ -10,6 +10,7 @@ use crate::background::Background;
 use crate::domain::validate::{Plc, PlcSegment};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
+use crate::refine::SEGMENT_MIN;
 use crate::size::{GrowthField, Source};
 use crate::triangulation::{HalfEdgeId, VertexId};
 
@@ -37,7 +38,7 @@ pub const RATIO_MAX: f64 = 2.0;
 const GAP_PARTS: f64 = 256.0;
 /// Steps in a part when the field is integrated along a segment.
 const STEPS: f64 = 8.0;
-/// As for pieces in refinement: 4096 units in the last place of the largest coordinate.
+/// Parts are at least this part of the largest coordinate: 4096 units in its last place.
 const LENGTH_MIN: f64 = f64::EPSILON * 4096.0;
 
 /// The domain with its boundary and constraints split; `background` is its triangulation.
@@ -71,6 +72,8 @@ struct Line {
     length: f64,
     /// Where it is cut: ascending places from its start (0) to its end (1), both included.
     places: Vec<f64>,
+    /// Too short for nodes that rounding leaves on it.
+    is_fixed: bool,
 }
 
 impl Line {
@@ -102,7 +105,9 @@ impl<'a> Splitter<'a> {
             if lines.last().is_none_or(|line| line.segment != segment) {
                 let [a, b] = edge.vertices.map(|v| points[v.index()]);
                 let (half_edge, ends, length) = (edge.half_edge, edge.vertices, a.distance(b));
-                lines.push(Line { half_edge, segment, ends, length, places: vec![0.0, 1.0] });
+                let is_fixed = length < SEGMENT_MIN * largest;
+                let places = vec![0.0, 1.0];
+                lines.push(Line { half_edge, segment, ends, length, places, is_fixed });
             }
         }
         Self { background, options, lines, length_min: LENGTH_MIN * largest, count: 0 }
@@ -122,7 +127,7 @@ impl<'a> Splitter<'a> {
     fn follow(&mut self, field: &GrowthField) -> Result<(), TooManyPoints> {
         for i in 0..self.lines.len() {
             let line = &self.lines[i];
-            if line.length < 2.0 * self.length_min {
+            if line.is_fixed {
                 continue;
             }
             let left = (self.options.points_max - self.count) as f64;
@@ -152,6 +157,9 @@ impl<'a> Splitter<'a> {
             }
             for i in 0..self.lines.len() {
                 let line = &mut self.lines[i];
+                if line.is_fixed {
+                    continue;
+                }
                 let limits = line.ends.map(|v| RATIO_MAX * shortest[v.index()] / line.length);
                 let before = line.places.len();
                 halve(&mut line.places, limits, 2.0 * self.length_min / line.length);

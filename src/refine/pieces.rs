@@ -39,15 +39,20 @@ pub(super) struct Pieces {
     segments: Vec<Segment>,
     /// For each vertex the segment that it was put on, if it is no vertex of the domain's own.
     on: Vec<u32>,
-    /// Pieces shorter than this stay whole.
-    length_min: f64,
+    /// The largest coordinate.
+    largest: f64,
 }
 
 const ON_NONE: u32 = u32::MAX;
 
 /// A piece is at least this part of the largest coordinate, 4096 units in its last place: below,
 /// rounding would turn its halves by an angle that shows.
-const LENGTH_MIN: f64 = f64::EPSILON * 4096.0;
+const PIECE_MIN: f64 = f64::EPSILON * 4096.0;
+
+/// A segment that is split is at least this part of the largest coordinate, 2^22 units in its last
+/// place: a node is two units off at most, and with more than 2^-20 of its length off, the segment
+/// would count as lost (SPEC 9.1).
+pub(crate) const SEGMENT_MIN: f64 = f64::EPSILON * (1_u64 << 22) as f64;
 
 /// Vertices at the same distance from a common corner up to this part of it are on one shell.
 const SHELL: f64 = 1e-3;
@@ -88,8 +93,7 @@ impl Pieces {
                 is_stuck: false,
             });
         }
-        let largest = points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
-        pieces.length_min = LENGTH_MIN * largest;
+        pieces.largest = points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
         pieces.find_acute(points);
         pieces
     }
@@ -145,7 +149,7 @@ impl Pieces {
         let whole = a.distance(b);
         let [from, to] = piece.stretch;
         let length = (to - from) * whole;
-        if !(length >= 2.0 * self.length_min) {
+        if whole < SEGMENT_MIN * self.largest || length < 2.0 * PIECE_MIN * self.largest {
             return None;
         }
         let acute = [from == 0.0 && segment.is_acute[0], to == 1.0 && segment.is_acute[1]];
@@ -270,10 +274,21 @@ mod tests {
     }
 
     #[test]
-    fn pieces_of_a_few_ulps_stay_whole() {
-        let points = [[1.0, 1.0], [1.0 + 1e-13, 1.0]].map(Point2::from).to_vec();
-        let pieces = Pieces::new(&points, &[edge(0, 1, false)]);
-        assert_eq!(pieces.middle(&points, &pieces.list[0]), None);
+    fn what_is_too_short_stays_whole() {
+        for (length, is_split) in [(1e-13, false), (9e-10, false), (1e-9, true)] {
+            let points = [[1.0, 1.0], [1.0, 1.0 - length]].map(Point2::from).to_vec();
+            let pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+            let middle = pieces.middle(&points, &pieces.list[0]);
+            assert_eq!(middle.is_some(), is_split, "{length}");
+        }
+        let points = [[0.0, 0.0], [1.0, 0.0]].map(Point2::from).to_vec();
+        let mut pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+        let mut count = 0;
+        while let Some((_, at)) = pieces.middle(&points, &pieces.list[0]) {
+            count += 1;
+            pieces.cut(0, VertexId(1 + count), at);
+        }
+        assert_eq!(count, 40, "halves down to 4096 units in the last place");
     }
 
     #[test]
