@@ -214,16 +214,29 @@ impl<'a> Splitter<'a> {
         self.options.quantum.map_or(p, |quantum| p.rounded_to(quantum))
     }
 
-    /// Whether a point of a line lies strictly between the other sides of the triangles on its two
-    /// sides. All such points lie in the quadrilateral of those triangles, which is the line's own.
+    /// Whether a point of a line lies strictly inside its own part of the plane: left of the other
+    /// sides of the two triangles beside the line, and where such a side is a segment too, on the
+    /// line's side of the median between the two. Those parts are convex and disjoint, so whatever
+    /// was rounded, no two split lines cross.
     fn is_beside(&self, line: &Line, p: Point2) -> bool {
         let mesh = &self.background.triangulation;
         let sides = [Some(line.half_edge), mesh.twin(line.half_edge)].into_iter().flatten();
         let finite = sides.filter(|e| !mesh.is_ghost(e.triangle()));
-        finite.flat_map(|e| [e.next(), e.prev()]).all(|e| {
-            let [u, w] = [mesh.origin(e), mesh.dest(e)].map(|v| self.background.points[v.index()]);
-            orient2d(u, w, p) == Sign::Positive
-        })
+        finite.into_iter().all(|e| self.is_within(e, p))
+    }
+
+    /// The same on one side.
+    fn is_within(&self, e: HalfEdgeId, p: Point2) -> bool {
+        let mesh = &self.background.triangulation;
+        let [a, b, c] =
+            [mesh.origin(e), mesh.dest(e), mesh.apex(e)].map(|v| self.background.points[v.index()]);
+        let middle =
+            |u: Point2, w: Point2| Point2::new(0.5 * u.x + 0.5 * w.x, 0.5 * u.y + 0.5 * w.y);
+        let beside = |e, v, far, side| !mesh.is_constrained(e) || orient2d(v, far, p) == side;
+        orient2d(b, c, p) == Sign::Positive
+            && orient2d(c, a, p) == Sign::Positive
+            && beside(e.prev(), a, middle(b, c), Sign::Negative)
+            && beside(e.next(), b, middle(c, a), Sign::Positive)
     }
 }
 

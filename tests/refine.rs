@@ -250,6 +250,22 @@ fn small_corners_are_met_without_end_only_where_they_are() {
     }
 }
 
+// spec: E4 E6
+#[test]
+fn points_that_nearly_coincide_do_not_keep_refinement_going() {
+    for gap in [1.0, 2.0, 1e3, 1e6] {
+        let mut domain = polygon(&SQUARE);
+        let next = 0.6 + gap * f64::EPSILON / 2.0;
+        domain.points.extend([[0.6, 0.6], [next, 0.6]].map(Point2::from));
+        for split in [false, true] {
+            let meshed = mesh(&domain, &options(AreaMax::Unbounded, 25.0, split));
+            assert_sound("close points", &domain, &meshed);
+            let count = meshed.mesh.triangles.len();
+            assert!(count < 3000, "{gap} units apart: {count} triangles");
+        }
+    }
+}
+
 // spec: E5 E8
 #[test]
 fn the_boundary_is_kept_unless_splitting_is_allowed() {
@@ -474,4 +490,78 @@ fn an_even_boundary_is_left_alone() {
     let meshed = mesh(&even, &split);
     assert_eq!(meshed.splits, 0);
     assert_eq!(meshed.mesh, mesh(&even, &Options::default()).mesh);
+}
+
+#[cfg(feature = "cli")]
+mod program {
+    use std::path::Path;
+    use std::process::{Command, Output};
+
+    fn jump() -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/jump.poly");
+        path.to_str().expect("UTF-8").to_owned()
+    }
+
+    fn run(arguments: &str, more: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_trigrade"))
+            .args(arguments.split_whitespace())
+            .args(more)
+            .output()
+            .expect("the program runs")
+    }
+
+    #[track_caller]
+    fn assert_says(output: &Output, code: i32, words: &[&str]) {
+        let text = [&output.stdout, &output.stderr].map(|s| String::from_utf8_lossy(s)).concat();
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        assert!(!text.contains("panicked"), "{text}");
+        for word in words {
+            assert!(text.contains(word), "`{word}` is not in {text}");
+        }
+    }
+
+    // spec: E4 E5
+    #[test]
+    fn a_run_says_what_it_reached() {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let mesh = folder.path().join("a.msh").to_str().expect("UTF-8").to_owned();
+        let jump = jump();
+        let refine = |options: &str| run("mesh --method delaunay -o", &[&mesh, &jump, options]);
+        let split =
+            run("mesh --method delaunay --min-angle 25 --split-boundary", &["-o", &mesh, &jump]);
+        assert_says(&split, 0, &["every angle is at least 25 degrees", "points added", "passed"]);
+        assert_says(&run("check --min-angle 25", &[&mesh, "--domain", &jump]), 0, &[]);
+        let kept = run("mesh --method delaunay --min-angle 25", &["-o", &mesh, &jump]);
+        assert_says(&kept, 0, &["have an angle below 25 degrees", "--split-boundary may split it"]);
+        let json = run("mesh --method delaunay --min-angle 25 --json", &["-o", &mesh, &jump]);
+        assert_says(&json, 0, &["\"triangles_below_min_angle\": ", "\"min_angle\": 25.0"]);
+        assert_says(&refine("--no-check"), 0, &["triangles"]);
+        assert_says(&refine("--dry-run"), 0, &["predicted"]);
+    }
+
+    // spec: !E10 E6
+    #[test]
+    fn senseless_bounds_exit_2_and_are_named() {
+        let jump = jump();
+        let broken = [
+            ("--method delaunay --min-angle 35", "min-angle"),
+            ("--method delaunay --min-angle=-1", "min-angle"),
+            ("--method delaunay --min-angle nan", "min-angle"),
+            ("--method delaunay --max-area 0", "max-area"),
+            ("--method delaunay --max-area inf", "max-area"),
+            ("--method delaunay --max-area large", "max-area"),
+            ("--min-angle 20", "--method delaunay"),
+            ("--method afm --max-area 1", "--method delaunay"),
+            ("--method delaunay --max-area 1e-9", "--max-triangles"),
+            ("--method delaunay --min-angle 30 --split-boundary --max-triangles 20", "the limit"),
+            ("--split-boundary --max-triangles 20", "--max-triangles"),
+        ];
+        for (options, word) in broken {
+            assert_says(
+                &run(&format!("mesh {options} -o -"), &["--form", "off", &jump]),
+                2,
+                &[word],
+            );
+        }
+    }
 }

@@ -12,8 +12,8 @@ use crate::point::Point2;
 use crate::refine::{AreaBound, RefineOptions, Refined, refine};
 use crate::size::Prediction;
 
-/// Triangles per unit of (area over bound): the mean triangle has about 0.6 of the largest area.
-const TRIANGLES_PER_BOUND: f64 = 1.7;
+/// Triangles per unit of (area over bound): the mean triangle has about 0.65 of the largest area.
+const TRIANGLES_PER_BOUND: f64 = 1.55;
 
 pub(super) fn mesh(
     background: &Background,

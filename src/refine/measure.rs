@@ -35,21 +35,13 @@ const ROOM: f64 = 100.0 * f64::EPSILON;
 const NEARER: f64 = 0.95;
 /// Without a bound on angles edges are guarded as if for this one, in degrees.
 const GUARDED_DEG: f64 = 30.0;
-/// Ruppert's bound: up to it pieces that may be split are guarded by their diametral circle, for
-/// which his theorem holds: the lens for 45 degrees.
-const CIRCLE_MAX_DEG: f64 = 20.7;
-const CIRCLE_DEG: f64 = 45.0;
 
 impl Bounds {
     /// For a least angle in degrees; 0 is none.
-    pub(super) fn new(angle_min_deg: f64, split_boundary: bool) -> Self {
+    pub(super) fn new(angle_min_deg: f64) -> Self {
         let radians = |deg: f64| deg * (std::f64::consts::PI / 180.0);
         let (sine, cosine) = (libm::sin(radians(angle_min_deg)), libm::cos(radians(angle_min_deg)));
-        let guarded = match angle_min_deg {
-            0.0 => GUARDED_DEG,
-            bound if split_boundary && bound <= CIRCLE_MAX_DEG => CIRCLE_DEG,
-            bound => bound,
-        };
+        let guarded = if angle_min_deg > 0.0 { angle_min_deg } else { GUARDED_DEG };
         let lens = libm::cos(radians(2.0 * guarded));
         Self {
             sine_sq: sine * sine * (1.0 + ROOM),
@@ -63,7 +55,8 @@ impl Bounds {
     #[inline]
     pub(super) fn flaw(&self, corners: [Point2; 3], doubled_max: f64) -> Option<Flaw> {
         let Measures { doubled, error, squares: [shortest, middle, longest] } = measure(corners);
-        let has_small_angle = doubled * doubled < self.sine_sq * middle * longest;
+        let has_small_angle =
+            self.sine_sq > 0.0 && doubled * doubled < self.sine_sq * middle * longest;
         let is_too_large = doubled + error > doubled_max;
         if !has_small_angle && !is_too_large {
             return None;
@@ -168,7 +161,7 @@ mod tests {
     }
 
     fn is_flawed(angle: f64, doubled_max: f64, corners: [Point2; 3]) -> [bool; 2] {
-        let flaw = Bounds::new(angle, false).flaw(corners, doubled_max);
+        let flaw = Bounds::new(angle).flaw(corners, doubled_max);
         flaw.map_or([false; 2], |f| [f.has_small_angle, f.is_too_large])
     }
 
@@ -205,7 +198,7 @@ mod tests {
     #[test]
     fn the_circumcentre_is_as_far_from_all_corners() {
         let corners = triangle([[3.0, 1.0], [4.5, 1.25], [3.5, 2.5]]);
-        let centre = Bounds::new(0.0, false).centre(corners, false);
+        let centre = Bounds::new(0.0).centre(corners, false);
         let radii = corners.map(|p| p.distance(centre));
         assert!((radii[0] - radii[1]).abs() < 1e-14 && (radii[0] - radii[2]).abs() < 1e-14);
     }
@@ -214,30 +207,27 @@ mod tests {
     fn the_off_centre_makes_an_angle_just_above_the_bound() {
         let corners = triangle([[0.0, 0.0], [0.01, 0.0], [0.005, 1.0]]);
         for angle in [5.0, 20.0, 25.0, 30.0] {
-            let bounds = Bounds::new(angle, false);
+            let bounds = Bounds::new(angle);
             let p = bounds.centre(corners, true);
             let made = smallest_angle_deg([corners[0], corners[1], p]);
             assert!(made > angle && made < 1.06 * angle, "{angle}: {made}");
             // Rotated corners give the same point.
             assert_eq!(p, bounds.centre([corners[1], corners[2], corners[0]], true));
         }
-        let p = Bounds::new(1e-3, false).centre(corners, true);
-        assert_eq!(p, Bounds::new(0.0, false).centre(corners, false), "the circumcentre is nearer");
+        let p = Bounds::new(1e-3).centre(corners, true);
+        assert_eq!(p, Bounds::new(0.0).centre(corners, false), "the circumcentre is nearer");
     }
 
     #[test]
     fn a_lens_is_the_points_that_see_the_edge_under_a_wide_angle() {
         let edge = triangle([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]);
         let edge = [edge[0], edge[1]];
-        let bounds = Bounds::new(30.0, false);
+        let bounds = Bounds::new(30.0);
         let height = 1.0 / 3.0_f64.sqrt(); // an angle of 120 degrees
         assert!(bounds.encroaches(edge, Point2::new(0.0, 0.999 * height)));
         assert!(!bounds.encroaches(edge, Point2::new(0.0, 1.001 * height)));
         assert!(bounds.encroaches(edge, Point2::new(0.0, -0.5 * height)));
         assert!(!bounds.encroaches(edge, Point2::new(2.0, 0.0)));
-        let circle = Bounds::new(20.0, true);
-        assert!(circle.encroaches(edge, Point2::new(0.0, 0.999)));
-        assert!(!circle.encroaches(edge, Point2::new(0.0, 1.001)));
     }
 
     #[test]

@@ -178,6 +178,11 @@ impl Pieces {
         second
     }
 
+    /// Whether an edge is so short that points laid beside it would be moved visibly by rounding.
+    pub(super) fn are_too_close(&self, points: &[Point2], u: VertexId, w: VertexId) -> bool {
+        points[u.index()].distance(points[w.index()]) < PIECE_MIN * self.largest
+    }
+
     /// Whether two vertices lie on two segments that meet, as far from their common corner: the
     /// edge between them is as short as the corner is sharp, and no point can change that (Miller,
     /// Pav and Walkington 2003).

@@ -67,7 +67,7 @@ impl<'a> Refiner<'a> {
             hints: Vec::new(),
             pieces,
             region_doubled: region_areas(background),
-            bounds: Bounds::new(options.angle_min_deg, options.split_boundary),
+            bounds: Bounds::new(options.angle_min_deg),
             options,
             queue: Queue::default(),
             encroached: Vec::new(),
@@ -183,7 +183,7 @@ impl<'a> Refiner<'a> {
     /// Mends the triangle in a slot, if it has a flaw.
     fn mend(&mut self, t: TriangleId) {
         let Some(mut flaw) = self.flaw(t) else { return };
-        flaw.has_small_angle &= !self.is_hopeless(t);
+        flaw.has_small_angle = flaw.has_small_angle && !self.is_hopeless(t);
         if !flaw.has_small_angle && !flaw.is_too_large {
             return;
         }
@@ -201,14 +201,12 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// A small angle that the domain itself demands.
+    /// A small angle that the domain itself demands, or that rounding would decide.
     fn is_hopeless(&self, t: TriangleId) -> bool {
-        if !self.options.split_boundary {
-            return false;
-        }
         let side = t.half_edge(shortest_side(self.corners(t)) as u32);
         let (u, w) = (self.mesh.origin(side), self.mesh.dest(side));
-        self.pieces.are_on_one_shell(&self.points, u, w)
+        self.pieces.are_too_close(&self.points, u, w)
+            || self.options.split_boundary && self.pieces.are_on_one_shell(&self.points, u, w)
     }
 
     /// Queues the obstacles of the last trial point; says whether one of them can be split.
