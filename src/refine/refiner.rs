@@ -118,7 +118,7 @@ impl<'a> Refiner<'a> {
             if self.mesh.live_count() > self.options.triangles_max {
                 return Err(RefineError::Budget(self.options.triangles_max));
             }
-            if steps % PROGRESS_STEPS == 0 && !progress(self.mesh.live_count()) {
+            if steps.is_multiple_of(PROGRESS_STEPS) && !progress(self.mesh.live_count()) {
                 return Err(RefineError::Stopped);
             }
         }
