@@ -80,7 +80,7 @@ impl Observer for Unobserved {}
 pub struct Meshed {
     /// The mesh.
     pub mesh: Mesh,
-    /// Wanted spacing at each of its points.
+    /// Wanted spacing at each of its points; infinite where no field was asked for (method delaunay).
     pub spacing: Vec<f64>,
     /// Triangles predicted before meshing.
     pub prediction: Prediction,
