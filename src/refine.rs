@@ -17,7 +17,7 @@ mod pieces;
 mod queue;
 mod refiner;
 
-pub(crate) use pieces::SEGMENT_MIN;
+pub(crate) use pieces::{SEGMENT_MIN, last_place};
 
 use crate::background::Background;
 use crate::point::Point2;

@@ -10,7 +10,7 @@ use crate::background::Background;
 use crate::domain::validate::{Plc, PlcSegment};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
-use crate::refine::SEGMENT_MIN;
+use crate::refine::{SEGMENT_MIN, last_place};
 use crate::size::{GrowthField, Source};
 use crate::triangulation::{HalfEdgeId, VertexId};
 
@@ -38,8 +38,8 @@ pub const RATIO_MAX: f64 = 2.0;
 const GAP_PARTS: f64 = 256.0;
 /// Steps in a part when the field is integrated along a segment.
 const STEPS: f64 = 8.0;
-/// Parts are at least this part of the largest coordinate: 4096 units in its last place.
-const LENGTH_MIN: f64 = f64::EPSILON * 4096.0;
+/// Parts are not shorter than as many units in the last place of the largest coordinate.
+const LENGTH_MIN: f64 = 4096.0;
 
 /// The domain with its boundary and constraints split; `background` is its triangulation.
 ///
@@ -97,7 +97,7 @@ struct Splitter<'a> {
 impl<'a> Splitter<'a> {
     fn new(background: &'a Background, options: SplitOptions) -> Self {
         let points = &background.points;
-        let largest = points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
+        let unit = last_place(points, options.quantum);
         let mut lines: Vec<Line> = Vec::with_capacity(background.edges.len());
         for edge in &background.edges {
             let segment = edge.segment as usize;
@@ -105,12 +105,12 @@ impl<'a> Splitter<'a> {
             if lines.last().is_none_or(|line| line.segment != segment) {
                 let [a, b] = edge.vertices.map(|v| points[v.index()]);
                 let (half_edge, ends, length) = (edge.half_edge, edge.vertices, a.distance(b));
-                let is_fixed = length < SEGMENT_MIN * largest;
+                let is_fixed = length < SEGMENT_MIN * unit;
                 let places = vec![0.0, 1.0];
                 lines.push(Line { half_edge, segment, ends, length, places, is_fixed });
             }
         }
-        Self { background, options, lines, length_min: LENGTH_MIN * largest, count: 0 }
+        Self { background, options, lines, length_min: LENGTH_MIN * unit, count: 0 }
     }
 
     fn ends(&self, line: &Line) -> [Point2; 2] {

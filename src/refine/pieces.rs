@@ -39,20 +39,19 @@ pub(super) struct Pieces {
     segments: Vec<Segment>,
     /// For each vertex the segment that it was put on, if it is no vertex of the domain's own.
     on: Vec<u32>,
-    /// The largest coordinate.
-    largest: f64,
+    /// The unit in the last place of the largest coordinate.
+    unit: f64,
 }
 
 const ON_NONE: u32 = u32::MAX;
 
-/// A piece is at least this part of the largest coordinate, 4096 units in its last place: below,
+/// A piece has at least as many units in the last place of the largest coordinate: below,
 /// rounding would turn its halves by an angle that shows.
-const PIECE_MIN: f64 = f64::EPSILON * 4096.0;
+const PIECE_MIN: f64 = 4096.0;
 
-/// A segment that is split is at least this part of the largest coordinate, 2^22 units in its last
-/// place: a node is two units off at most, and with more than 2^-20 of its length off, the segment
-/// would count as lost (SPEC 9.1).
-pub(crate) const SEGMENT_MIN: f64 = f64::EPSILON * (1_u64 << 22) as f64;
+/// A segment that is split has at least as many: a node is two units off at most, and with more than
+/// 2^-20 of its length off, the segment would count as lost (SPEC 9.1).
+pub(crate) const SEGMENT_MIN: f64 = (1_u64 << 22) as f64;
 
 /// Vertices at the same distance from a common corner up to this part of it are on one shell.
 const SHELL: f64 = 1e-3;
@@ -73,8 +72,8 @@ pub(super) fn side_of(owner: u32) -> (usize, usize) {
 impl Pieces {
     /// A piece for each boundary edge, and one for both sides of each interior constraint, which
     /// follow each other in `edges`. Boundary edges come first.
-    pub(super) fn new(points: &[Point2], edges: &[FrontEdge]) -> Self {
-        let mut pieces = Self { on: vec![ON_NONE; points.len()], ..Self::default() };
+    pub(super) fn new(points: &[Point2], edges: &[FrontEdge], unit: f64) -> Self {
+        let mut pieces = Self { on: vec![ON_NONE; points.len()], unit, ..Self::default() };
         let mut waiting: Option<u32> = None;
         for edge in edges {
             if let Some(piece) = waiting.take() {
@@ -93,7 +92,6 @@ impl Pieces {
                 is_stuck: false,
             });
         }
-        pieces.largest = points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
         pieces.find_acute(points);
         pieces
     }
@@ -149,7 +147,7 @@ impl Pieces {
         let whole = a.distance(b);
         let [from, to] = piece.stretch;
         let length = (to - from) * whole;
-        if whole < SEGMENT_MIN * self.largest || length < 2.0 * PIECE_MIN * self.largest {
+        if whole < SEGMENT_MIN * self.unit || length < 2.0 * PIECE_MIN * self.unit {
             return None;
         }
         let acute = [from == 0.0 && segment.is_acute[0], to == 1.0 && segment.is_acute[1]];
@@ -180,7 +178,7 @@ impl Pieces {
 
     /// Whether an edge is so short that points laid beside it would be moved visibly by rounding.
     pub(super) fn are_too_close(&self, points: &[Point2], u: VertexId, w: VertexId) -> bool {
-        points[u.index()].distance(points[w.index()]) < PIECE_MIN * self.largest
+        points[u.index()].distance(points[w.index()]) < PIECE_MIN * self.unit
     }
 
     /// Whether two vertices lie on two segments that meet, as far from their common corner: the
@@ -199,6 +197,13 @@ impl Pieces {
             (du - dw).abs() <= SHELL * du.min(dw)
         })
     }
+}
+
+/// The unit in the last place of the largest coordinate; among subnormal numbers that is the least of
+/// them, which `quantum` stands for where coordinates were scaled.
+pub(crate) fn last_place(points: &[Point2], quantum: Option<f64>) -> f64 {
+    let largest = points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
+    (f64::EPSILON * largest).max(quantum.unwrap_or(0.0))
 }
 
 /// The power of two from a third to two thirds of a length.
@@ -234,7 +239,7 @@ mod tests {
         let angle = degrees.to_radians();
         let far = Point2::new(3.2 * libm::cos(angle), 3.2 * libm::sin(angle));
         let points = vec![Point2::new(0.0, 0.0), Point2::new(2.5, 0.0), far];
-        let pieces = Pieces::new(&points, &[edge(0, 1, false), edge(2, 0, false)]);
+        let pieces = Pieces::new(&points, &[edge(0, 1, false), edge(2, 0, false)], f64::EPSILON);
         (points, pieces)
     }
 
@@ -260,7 +265,7 @@ mod tests {
     #[test]
     fn nodes_of_a_segment_that_is_split_often_stay_on_it() {
         let points = [[0.1, 0.7], [1.9, 1.3]].map(Point2::from).to_vec();
-        let mut pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+        let mut pieces = Pieces::new(&points, &[edge(0, 1, false)], f64::EPSILON);
         for round in 0..30 {
             let piece = pieces.list[round % 2];
             let (p, at) = pieces.middle(&points, &piece).unwrap();
@@ -274,7 +279,7 @@ mod tests {
     #[test]
     fn level_segments_stay_level() {
         let points = [[0.1, 0.3], [0.7, 0.3]].map(Point2::from).to_vec();
-        let pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+        let pieces = Pieces::new(&points, &[edge(0, 1, false)], f64::EPSILON);
         assert_eq!(pieces.middle(&points, &pieces.list[0]).unwrap().0.y, 0.3);
     }
 
@@ -282,12 +287,12 @@ mod tests {
     fn what_is_too_short_stays_whole() {
         for (length, is_split) in [(1e-13, false), (9e-10, false), (1e-9, true)] {
             let points = [[1.0, 1.0], [1.0, 1.0 - length]].map(Point2::from).to_vec();
-            let pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+            let pieces = Pieces::new(&points, &[edge(0, 1, false)], f64::EPSILON);
             let middle = pieces.middle(&points, &pieces.list[0]);
             assert_eq!(middle.is_some(), is_split, "{length}");
         }
         let points = [[0.0, 0.0], [1.0, 0.0]].map(Point2::from).to_vec();
-        let mut pieces = Pieces::new(&points, &[edge(0, 1, false)]);
+        let mut pieces = Pieces::new(&points, &[edge(0, 1, false)], f64::EPSILON);
         let mut count = 0;
         while let Some((_, at)) = pieces.middle(&points, &pieces.list[0]) {
             count += 1;
@@ -317,7 +322,7 @@ mod tests {
     #[test]
     fn a_constraint_is_one_piece_with_two_sides() {
         let points = [[0.0, 0.0], [1.0, 0.0]].map(Point2::from).to_vec();
-        let pieces = Pieces::new(&points, &[edge(0, 1, true), edge(1, 0, true)]);
+        let pieces = Pieces::new(&points, &[edge(0, 1, true), edge(1, 0, true)], f64::EPSILON);
         assert_eq!(pieces.list.len(), 1);
         assert!(pieces.list[0].sides.iter().all(Option::is_some));
         assert_eq!(side_of(owner(7, 1)), (7, 1));

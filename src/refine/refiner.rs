@@ -2,7 +2,7 @@
 
 use super::cavity::Cavity;
 use super::measure::{Bounds, Flaw, centroid, shortest_side, smallest_angle_deg};
-use super::pieces::{Pieces, owner, side_of};
+use super::pieces::{Pieces, last_place, owner, side_of};
 use super::queue::Queue;
 use super::{AreaBound, Progress, RefineError, RefineOptions, RefineStats, Refined, RefinedEdge};
 use crate::background::{Background, INSIDE};
@@ -52,7 +52,7 @@ impl<'a> Refiner<'a> {
     pub(super) fn new(background: &Background, options: RefineOptions<'a>) -> Self {
         let (mut mesh, edges) = background.open_region();
         let points = background.points.clone();
-        let pieces = Pieces::new(&points, &edges);
+        let pieces = Pieces::new(&points, &edges, last_place(&points, options.quantum));
         for (i, piece) in pieces.list.iter().enumerate() {
             for (side, e) in piece.sides.iter().enumerate() {
                 if let Some(e) = *e {
