@@ -16,6 +16,7 @@ pub mod mesh_file;
 pub mod outcome;
 pub mod output;
 pub mod point_file;
+pub mod refinement;
 pub mod torture;
 pub mod verdict;
 pub mod voronoi;

@@ -2,9 +2,10 @@
 
 mod field;
 mod options;
+mod refined;
 mod scale;
 
-pub use options::{Gradation, Method, Options, OptionsError};
+pub use options::{AreaMax, Gradation, Method, Options, OptionsError};
 
 use crate::background::{Background, BackgroundError};
 use crate::domain::Domain;
@@ -13,7 +14,9 @@ use crate::front::{self, FrontError, FrontMesh, FrontOptions, FrontStats, Start}
 use crate::improve::{ImproveStats, improve};
 use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
+use crate::refine::{RefineError, RefineStats};
 use crate::size::Prediction;
+use crate::subdivide::{SplitOptions, TooManyPoints, subdivide};
 use crate::triangulation::{Across, HalfEdgeId, Triangulation};
 use field::Fields;
 use scale::Scale;
@@ -30,6 +33,8 @@ pub enum Stage {
     Size,
     /// The advancing front.
     Front,
+    /// Delaunay refinement, in place of the front.
+    Refine,
     /// Flips and smoothing.
     Improve,
     /// Plain arrays.
@@ -43,6 +48,7 @@ impl std::fmt::Display for Stage {
             Self::Background => "background",
             Self::Size => "size field",
             Self::Front => "front",
+            Self::Refine => "refine",
             Self::Improve => "improve",
             Self::Collect => "collect",
         })
@@ -74,7 +80,7 @@ impl Observer for Unobserved {}
 pub struct Meshed {
     /// The mesh.
     pub mesh: Mesh,
-    /// Wanted spacing at each of its points.
+    /// Wanted spacing at each of its points; infinite where no field was asked for (method delaunay).
     pub spacing: Vec<f64>,
     /// Triangles predicted before meshing.
     pub prediction: Prediction,
@@ -82,6 +88,10 @@ pub struct Meshed {
     pub front: FrontStats,
     /// What improvement did.
     pub improve: ImproveStats,
+    /// What refinement did (method delaunay).
+    pub refine: Option<RefineStats>,
+    /// Points inserted on the boundary and on constraints.
+    pub splits: usize,
 }
 
 /// Why there is no mesh.
@@ -110,6 +120,12 @@ pub enum MeshError {
     /// The front gave up.
     #[error(transparent)]
     Front(#[from] FrontError),
+    /// Refinement gave up.
+    #[error(transparent)]
+    Refine(#[from] RefineError),
+    /// The boundary would be split too often.
+    #[error(transparent)]
+    Split(#[from] TooManyPoints),
     /// Options that make no sense.
     #[error(transparent)]
     Options(#[from] OptionsError),
@@ -150,21 +166,16 @@ pub fn mesh_plc(
     scale.shrink(&mut plc);
 
     observer.stage(Stage::Background);
-    let background = Background::new(&plc)?;
+    let mut background = Background::new(&plc)?;
+    if options.method == Method::Delaunay {
+        return refined::mesh(&background, options, &scale, observer);
+    }
+    let splits = split_boundary(&plc, &mut background, options, &scale)?;
 
     observer.stage(Stage::Size);
     let fields = Fields::new(&background, options, &scale);
     let prediction = fields.predict(options.triangles_max);
-    if prediction.triangles > options.triangles_max as f64 {
-        return Err(MeshError::TooMany {
-            predicted: prediction.triangles,
-            stopped: prediction.stopped,
-            limit: options.triangles_max,
-        });
-    }
-    if !observer.predicted(prediction) {
-        return Err(FrontError::Stopped.into());
-    }
+    admit(prediction, options, observer)?;
 
     observer.stage(Stage::Front);
     let mut laid = lay(&fields, options, prediction, &scale, observer)?;
@@ -177,7 +188,43 @@ pub fn mesh_plc(
         improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
 
     observer.stage(Stage::Collect);
-    Ok(collect(laid, &background, improved, prediction, &scale))
+    Ok(Meshed { splits, ..collect(laid, &background, improved, prediction, &scale) })
+}
+
+/// Splits the boundary where that is asked for; returns the number of new points.
+fn split_boundary(
+    plc: &Plc,
+    background: &mut Background,
+    options: &Options,
+    scale: &Scale,
+) -> Result<usize, MeshError> {
+    if !options.split_boundary {
+        return Ok(0);
+    }
+    let split_options = SplitOptions {
+        growth: options.growth,
+        points_max: options.triangles_max,
+        quantum: scale.quantum(),
+    };
+    let (split, count) = subdivide(plc, background, split_options)?;
+    *background = Background::new(&split)?;
+    Ok(count)
+}
+
+/// Asks the limit and the observer whether to go on.
+fn admit(
+    prediction: Prediction,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<(), MeshError> {
+    if prediction.triangles > options.triangles_max as f64 {
+        return Err(MeshError::TooMany {
+            predicted: prediction.triangles,
+            stopped: prediction.stopped,
+            limit: options.triangles_max,
+        });
+    }
+    if observer.predicted(prediction) { Ok(()) } else { Err(FrontError::Stopped.into()) }
 }
 
 /// Lays the triangles: by the front, or none but the background's own.
@@ -264,7 +311,7 @@ fn collect(
     let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
     let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
     let mesh = Mesh { points, triangles, edges, regions };
-    Meshed { mesh, spacing, prediction, front: stats, improve }
+    Meshed { mesh, spacing, prediction, front: stats, improve, refine: None, splits: 0 }
 }
 
 fn region_markers(topology: &Triangulation, background: &Background) -> Vec<i32> {

@@ -173,7 +173,7 @@ fn a_domain_is_meshed_checked_and_written_in_every_form() {
 #[test]
 fn a_checked_mesh_passes_the_check_on_its_own() {
     let (folder, plate) = folder();
-    for method in ["graded", "afm", "direct", "delaunay-initial"] {
+    for method in ["graded", "afm", "direct", "delaunay-initial", "delaunay"] {
         let mesh = at(&folder, &format!("{method}.off"));
         assert_exit(&run(&["mesh", &plate, "-o", &mesh, "--method", method]), 0);
         assert_exit(&run(&["check", &mesh, "--domain", &plate]), 0);

@@ -88,6 +88,7 @@ pub enum Verb {
 Examples:
   trigrade mesh wing.poly -o wing.msh -o wing.svg
   trigrade mesh naca.dat --farfield 15,60 -o naca.vtu
+  trigrade mesh lake.poly --method delaunay --min-angle 25 --split-boundary -o lake.msh
   trigrade mesh - --from poly --form off -o - < wing.poly > wing.off
   trigrade mesh wing.poly --method afm --dry-run")]
 pub struct MeshArguments {
@@ -176,6 +177,18 @@ pub struct MeshOptions {
     /// Refuse, before any work, to make more triangles than this.
     #[arg(long, value_name = "COUNT", default_value_t = 20_000_000)]
     pub max_triangles: u32,
+    /// Largest area with `--method delaunay`: a number, `none`, or `field` for the equilateral
+    /// triangle of the spacing there (the default, but `none` with --min-angle).
+    #[arg(long, value_name = "AREA", value_parser = parse_max_area)]
+    pub max_area: Option<mesher::AreaMax>,
+    /// Least angle with `--method delaunay`, in degrees up to 34; where the boundary stands in the
+    /// way, see --split-boundary.
+    #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
+    pub min_angle: Option<f64>,
+    /// Allow new points on the boundary and on constraints: where --min-angle demands them, and
+    /// with the other methods where the spacing jumps or a gap is narrow.
+    #[arg(long)]
+    pub split_boundary: bool,
     /// Leave out the smoothing after the front.
     #[arg(long)]
     pub no_improve: bool,
@@ -192,6 +205,7 @@ impl MeshOptions {
                 Method::Afm => mesher::Method::Afm,
                 Method::Direct => mesher::Method::Direct,
                 Method::DelaunayInitial => mesher::Method::DelaunayInitial,
+                Method::Delaunay => mesher::Method::Delaunay,
             },
             density: match self.density {
                 Density::AllEdges => size::Density::AllEdges,
@@ -216,7 +230,24 @@ impl MeshOptions {
             },
             triangles_max: self.max_triangles as usize,
             improve: if self.no_improve { ImproveOptions { sweeps: 0 } } else { defaults.improve },
+            area_max: self.max_area.unwrap_or(match self.min_angle {
+                Some(_) => mesher::AreaMax::Unbounded,
+                None => mesher::AreaMax::Field,
+            }),
+            angle_min_deg: self.min_angle.unwrap_or(0.0),
+            split_boundary: self.split_boundary,
             ..defaults
+        }
+    }
+
+    /// A flag that the method does not heed.
+    #[must_use]
+    pub fn idle_flag(&self) -> Option<&'static str> {
+        let is_refined = self.method == Method::Delaunay;
+        match (self.max_area, self.min_angle) {
+            (Some(_), _) if !is_refined => Some("--max-area"),
+            (_, Some(_)) if !is_refined => Some("--min-angle"),
+            _ => None,
         }
     }
 }
@@ -232,6 +263,8 @@ pub enum Method {
     Direct,
     /// The constrained Delaunay triangulation of the boundary alone.
     DelaunayInitial,
+    /// The same refined until areas and angles are within their bounds.
+    Delaunay,
 }
 
 /// `--density`
@@ -699,6 +732,16 @@ fn parse_positive(text: &str) -> Result<f64, String> {
     if value > 0.0 { Ok(value) } else { Err("the number must be above 0".into()) }
 }
 
+fn parse_max_area(text: &str) -> Result<mesher::AreaMax, String> {
+    match text.trim() {
+        "field" => Ok(mesher::AreaMax::Field),
+        "none" => Ok(mesher::AreaMax::Unbounded),
+        number => parse_positive(number)
+            .map(mesher::AreaMax::Constant)
+            .map_err(|error| format!("{error}; or write `field` or `none`")),
+    }
+}
+
 fn parse_duration(text: &str) -> Result<Duration, String> {
     let seconds = parse_positive(text)?;
     if seconds <= 86_400.0 {
@@ -770,6 +813,37 @@ mod tests {
             panic!("the verb is mesh");
         };
         assert_eq!(mesh.options.options(), mesher::Options::default());
+    }
+
+    fn options_of(line: &str) -> MeshOptions {
+        let words = ["trigrade", "mesh", "a", "-o", "b"].into_iter().chain(line.split_whitespace());
+        match Arguments::parse_from(words).verb {
+            Verb::Mesh(mesh) => mesh.options,
+            other => panic!("the verb is mesh, not {other:?}"),
+        }
+    }
+
+    // spec: E10
+    #[test]
+    fn areas_are_bounded_by_the_field_unless_angles_are_asked_for() {
+        let area = |line| options_of(line).options().area_max;
+        assert_eq!(area("--method delaunay"), mesher::AreaMax::Field);
+        assert_eq!(area("--method delaunay --min-angle 20"), mesher::AreaMax::Unbounded);
+        assert_eq!(area("--method delaunay --max-area 0.5"), mesher::AreaMax::Constant(0.5));
+        let both = "--method delaunay --max-area field --min-angle 20";
+        assert_eq!(area(both), mesher::AreaMax::Field);
+        for wrong in ["0", "-1", "nan", "inf", "", "large"] {
+            assert!(parse_max_area(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    // spec: E10
+    #[test]
+    fn bounds_that_a_method_does_not_heed_are_named() {
+        assert_eq!(options_of("--min-angle 20").idle_flag(), Some("--min-angle"));
+        assert_eq!(options_of("--method afm --max-area 1").idle_flag(), Some("--max-area"));
+        assert_eq!(options_of("--method delaunay --min-angle 20").idle_flag(), None);
+        assert_eq!(options_of("--split-boundary").idle_flag(), None);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::input::is_dash;
 use super::mesh_file::{self, Drawing, malformed, parse};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
+use super::refinement::Refinement;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
@@ -35,6 +36,10 @@ pub fn run(
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
+    if let Some(flag) = arguments.options.idle_flag() {
+        let message = format!("{flag} has a meaning with `--method delaunay` only");
+        return Err(Failure::cannot_run(Diagnostic::new(message)));
+    }
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
@@ -52,7 +57,7 @@ pub fn run(
     }
     let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
-    summary.note(&meshed);
+    summary.note(&meshed, &options);
     write_all(&mut outputs, &files, &meshed)?;
     if !arguments.no_check {
         watch.begin("read back");
@@ -109,7 +114,10 @@ pub fn no_mesh(error: &MeshError) -> Failure {
             diagnostic
                 .help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
         ),
-        MeshError::Front(_) | MeshError::Options(_) => Failure::cannot_run(diagnostic),
+        MeshError::Front(_)
+        | MeshError::Refine(_)
+        | MeshError::Split(_)
+        | MeshError::Options(_) => Failure::cannot_run(diagnostic),
     }
 }
 
@@ -221,6 +229,8 @@ struct Summary {
     points: usize,
     prediction: Option<Prediction>,
     mesh: Option<(usize, usize)>,
+    refinement: Option<Refinement>,
+    splits: usize,
     check: Option<(String, Report)>,
     written: Vec<PathBuf>,
     far_field: Option<Farfield>,
@@ -233,14 +243,18 @@ impl Summary {
             points: domain.points.len(),
             prediction: None,
             mesh: None,
+            refinement: None,
+            splits: 0,
             check: None,
             written: Vec::new(),
             far_field,
         }
     }
 
-    fn note(&mut self, meshed: &Meshed) {
+    fn note(&mut self, meshed: &Meshed, options: &Options) {
         self.prediction = Some(meshed.prediction);
+        self.refinement = meshed.refine.map(|stats| Refinement::new(stats, options));
+        self.splits = meshed.splits;
         self.mesh = Some((meshed.mesh.points.len(), meshed.mesh.triangles.len()));
     }
 
@@ -266,6 +280,12 @@ impl Summary {
         if let Some((points, triangles)) = self.mesh {
             let [triangles, points] = [triangles, points].map(|n| count(n as u64));
             line("meshed", format!("{triangles} triangles, {points} points"));
+        }
+        if self.splits > 0 {
+            line("boundary", format!("{} points added", count(self.splits as u64)));
+        }
+        for shortfall in self.refinement.iter().flat_map(Refinement::sentences) {
+            line("refined", shortfall);
         }
         match &self.check {
             Some((name, report)) => {
@@ -324,6 +344,8 @@ impl Summary {
             "predicted": self.prediction.map(|p| p.triangles),
             "points": self.mesh.map(|(points, _)| points),
             "triangles": self.mesh.map(|(_, triangles)| triangles),
+            "boundary_points_added": self.splits,
+            "refinement": self.refinement.as_ref().map(Refinement::json),
             "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
             "written": written,
             "seconds": times,

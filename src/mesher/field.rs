@@ -49,17 +49,21 @@ impl Fields {
         match options.method {
             Method::Afm => SizeField::BaseLength(options.stretch),
             Method::Direct => SizeField::Direct(DirectField::new(self.segments_as_points())),
-            Method::Graded | Method::DelaunayInitial => match options.gradation {
-                Gradation::Growth => {
-                    let spacing = self.node_spacing(options.density);
-                    SizeField::Growth(GrowthField::new(&self.sources(&spacing), options.growth))
+            Method::Graded | Method::DelaunayInitial | Method::Delaunay => {
+                match options.gradation {
+                    Gradation::Growth => {
+                        let spacing = self.node_spacing(options.density);
+                        SizeField::Growth(GrowthField::new(&self.sources(&spacing), options.growth))
+                    }
+                    Gradation::Mean => self.nodal(options.density, NodalRule::Mean),
+                    Gradation::Third => self.nodal(options.density, NodalRule::Third),
+                    Gradation::Uniform => SizeField::Uniform(
+                        options
+                            .spacing
+                            .map_or_else(|| self.mean_length(), |h| scale.shrink_length(h)),
+                    ),
                 }
-                Gradation::Mean => self.nodal(options.density, NodalRule::Mean),
-                Gradation::Third => self.nodal(options.density, NodalRule::Third),
-                Gradation::Uniform => SizeField::Uniform(
-                    options.spacing.map_or_else(|| self.mean_length(), |h| scale.shrink_length(h)),
-                ),
-            },
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::front::{Order, Rules};
 use crate::improve::ImproveOptions;
+use crate::refine::ANGLE_MAX_DEG;
 use crate::size::Density;
 
 /// How the domain is meshed.
@@ -15,6 +16,19 @@ pub enum Method {
     Direct,
     /// The constrained Delaunay triangulation of the boundary, without new points.
     DelaunayInitial,
+    /// The same with points inserted until areas and angles are within their bounds.
+    Delaunay,
+}
+
+/// How large a triangle may be (method delaunay).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AreaMax {
+    /// As the equilateral triangle of the spacing that the gradation gives.
+    Field,
+    /// At most this area, in the unit of the domain squared.
+    Constant(f64),
+    /// As large as it likes.
+    Unbounded,
 }
 
 /// How spacings at the boundary become a spacing inside (method graded).
@@ -56,6 +70,13 @@ pub struct Options {
     pub triangles_max: usize,
     /// Improvement after the front.
     pub improve: ImproveOptions,
+    /// Bound on areas (method delaunay).
+    pub area_max: AreaMax,
+    /// Least angle in degrees (method delaunay); 0 is none.
+    pub angle_min_deg: f64,
+    /// Whether the boundary and constraints may be split: by the method delaunay where an angle
+    /// demands it, by the others where the spacing jumps or a gap is narrow.
+    pub split_boundary: bool,
 }
 
 impl Default for Options {
@@ -72,6 +93,9 @@ impl Default for Options {
             rules: Rules::Scored,
             triangles_max: 20_000_000,
             improve: ImproveOptions::default(),
+            area_max: AreaMax::Field,
+            angle_min_deg: 0.0,
+            split_boundary: false,
         }
     }
 }
@@ -103,7 +127,11 @@ impl Options {
         if let Some(h) = self.spacing {
             demand("spacing", h, h.is_finite() && h > 0.0, "positive and finite")?;
         }
-        Ok(())
+        if let AreaMax::Constant(area) = self.area_max {
+            demand("max-area", area, area.is_finite() && area > 0.0, "positive and finite")?;
+        }
+        let angle = self.angle_min_deg;
+        demand("min-angle", angle, (0.0..=ANGLE_MAX_DEG).contains(&angle), "from 0 to 34 degrees")
     }
 }
 
@@ -122,6 +150,11 @@ mod tests {
             (Options { stretch: f64::INFINITY, ..Options::default() }, "stretch"),
             (Options { spacing: Some(0.0), ..Options::default() }, "spacing"),
             (Options { spacing: Some(f64::NAN), ..Options::default() }, "spacing"),
+            (Options { area_max: AreaMax::Constant(0.0), ..Options::default() }, "max-area"),
+            (Options { area_max: AreaMax::Constant(f64::NAN), ..Options::default() }, "max-area"),
+            (Options { angle_min_deg: -1.0, ..Options::default() }, "min-angle"),
+            (Options { angle_min_deg: 34.1, ..Options::default() }, "min-angle"),
+            (Options { angle_min_deg: f64::NAN, ..Options::default() }, "min-angle"),
         ];
         for (options, name) in broken {
             assert_eq!(options.check().unwrap_err().name, name);

@@ -38,6 +38,7 @@ impl Scale {
         }
         for region in &mut plc.regions {
             region.seed = self.shrunk(region.seed);
+            region.area_max = region.area_max.map(|area| self.shrink_area(area));
         }
     }
 
@@ -52,6 +53,10 @@ impl Scale {
 
     pub(super) fn grow_length(&self, h: f64) -> f64 {
         libm::scalbn(h, self.exponent)
+    }
+
+    pub(super) fn shrink_area(&self, area: f64) -> f64 {
+        libm::scalbn(area, -2 * self.exponent)
     }
 
     pub(super) fn shrink_length(&self, h: f64) -> f64 {

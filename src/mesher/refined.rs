@@ -1,0 +1,116 @@
+//! The method delaunay: refinement in place of the front and of improvement.
+
+use super::field::Fields;
+use super::options::{AreaMax, Options};
+use super::scale::Scale;
+use super::{MeshError, Meshed, Observer, Renumber, Stage, admit, region_markers};
+use crate::background::Background;
+use crate::front::FrontStats;
+use crate::improve::ImproveStats;
+use crate::mesh::{MarkedEdge, Mesh};
+use crate::point::Point2;
+use crate::refine::{AreaBound, RefineOptions, Refined, refine};
+use crate::size::Prediction;
+
+/// Triangles per unit of (area over bound): the mean triangle has about 0.65 of the largest area.
+const TRIANGLES_PER_BOUND: f64 = 1.55;
+
+pub(super) fn mesh(
+    background: &Background,
+    options: &Options,
+    scale: &Scale,
+    observer: &mut dyn Observer,
+) -> Result<Meshed, MeshError> {
+    observer.stage(Stage::Size);
+    let by_field = options.area_max == AreaMax::Field;
+    let fields = by_field.then(|| Fields::new(background, options, scale));
+    let area = match (options.area_max, &fields) {
+        (AreaMax::Field, Some(fields)) => AreaBound::Field(fields.field()),
+        (AreaMax::Constant(area), _) => AreaBound::Constant(scale.shrink_area(area)),
+        _ => AreaBound::None,
+    };
+    let prediction = predict(background, fields.as_ref(), area, options.triangles_max);
+    admit(prediction, options, observer)?;
+
+    observer.stage(Stage::Refine);
+    let refine_options = RefineOptions {
+        area,
+        angle_min_deg: options.angle_min_deg,
+        split_boundary: options.split_boundary,
+        triangles_max: options.triangles_max,
+        quantum: scale.quantum(),
+    };
+    let refined = refine(background, &refine_options, &mut |n| observer.progress(n))?;
+
+    observer.stage(Stage::Collect);
+    Ok(collect(refined, background, prediction, scale))
+}
+
+/// From the bounds on areas; a bound on angles alone predicts nothing but the initial triangles.
+fn predict(
+    background: &Background,
+    fields: Option<&Fields>,
+    area: AreaBound<'_>,
+    limit: usize,
+) -> Prediction {
+    if let Some(fields) = fields {
+        let Prediction { triangles, stopped } = fields.predict(limit);
+        return Prediction { triangles: TRIANGLES_PER_BOUND * triangles, stopped };
+    }
+    let constant = if let AreaBound::Constant(area) = area { area } else { f64::INFINITY };
+    let mut triangles = 0.0;
+    let mesh = &background.triangulation;
+    for t in mesh.triangles().filter(|&t| background.is_inside(t)) {
+        let region = background.region(t).and_then(|r| r.area_max).unwrap_or(f64::INFINITY);
+        let bound = constant.min(region);
+        let own = area_of(mesh.corners(t).map(|v| background.points[v.index()]));
+        // A triangle within its bound is one triangle, however small.
+        triangles += if own > bound { TRIANGLES_PER_BOUND * own / bound } else { 1.0 };
+    }
+    Prediction { triangles, stopped: constant == f64::INFINITY }
+}
+
+fn area_of([a, b, c]: [Point2; 3]) -> f64 {
+    0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x))
+}
+
+/// Plain arrays in the user's coordinates.
+fn collect(
+    refined: Refined,
+    background: &Background,
+    prediction: Prediction,
+    scale: &Scale,
+) -> Meshed {
+    let Refined { points, mesh: topology, edges, spacing, stats } = refined;
+    let mut triangles: Vec<[u32; 3]> =
+        topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
+    let renumber = Renumber::used(&triangles, points.len());
+    for corner in triangles.iter_mut().flatten() {
+        *corner = renumber.number(*corner);
+    }
+    let edge = |e: crate::refine::RefinedEdge| MarkedEdge {
+        vertices: e.vertices.map(|v| renumber.number(v.0)),
+        marker: e.marker,
+    };
+    let mesh = Mesh {
+        triangles,
+        edges: edges.into_iter().map(edge).collect(),
+        regions: region_markers(&topology, background),
+        points: renumber.kept(&points).map(|p| scale.grow(p)).collect(),
+    };
+    let spacing = match spacing.is_empty() {
+        // No field, no wish.
+        true => vec![f64::INFINITY; mesh.points.len()],
+        false => renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect(),
+    };
+    let splits = stats.splits as usize;
+    Meshed {
+        mesh,
+        spacing,
+        prediction,
+        front: FrontStats::default(),
+        improve: ImproveStats::default(),
+        refine: Some(stats),
+        splits,
+    }
+}
