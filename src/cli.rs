@@ -14,6 +14,7 @@ pub mod mesh;
 pub mod mesh_file;
 pub mod outcome;
 pub mod output;
+pub mod size_file;
 pub mod torture;
 pub mod verdict;
 pub mod watch;

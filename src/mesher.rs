@@ -1,10 +1,13 @@
 //! The pipeline: a domain in, a mesh out, a line per stage.
 
+mod control;
 mod field;
+mod fit;
 mod options;
 mod scale;
 
-pub use options::{Gradation, Method, Options, OptionsError};
+pub use fit::Fit;
+pub use options::{Count, Gradation, Method, Options, OptionsError};
 
 use crate::background::{Background, BackgroundError};
 use crate::domain::Domain;
@@ -13,8 +16,9 @@ use crate::front::{self, FrontError, FrontMesh, FrontOptions, FrontStats, Start}
 use crate::improve::{ImproveStats, improve};
 use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
-use crate::size::Prediction;
+use crate::size::{ExpressionError, Prediction, SpacingTable, TableError};
 use crate::triangulation::{Across, HalfEdgeId, Triangulation};
+use control::Control;
 use field::Fields;
 use scale::Scale;
 use std::collections::HashMap; // lookups only
@@ -82,6 +86,8 @@ pub struct Meshed {
     pub front: FrontStats,
     /// What improvement did.
     pub improve: ImproveStats,
+    /// How well its edges fit the wanted spacing; `None` when all of them are the domain's.
+    pub fit: Option<Fit>,
 }
 
 /// Why there is no mesh.
@@ -96,7 +102,8 @@ pub enum MeshError {
     /// The prediction is above the limit.
     #[error(
         "the size field asks for {}{predicted:.0} triangles, above the limit of {limit}: raise \
-         --max-triangles, or take a coarser field (a larger --growth or --spacing)",
+         --max-triangles, let --coarsen or --target choose a coarser field, or take one (a larger \
+         --growth or --spacing)",
         if *.stopped { "more than " } else { "about " }
     )]
     TooMany {
@@ -113,6 +120,20 @@ pub enum MeshError {
     /// Options that make no sense.
     #[error(transparent)]
     Options(#[from] OptionsError),
+    /// The gradation function is none for this method.
+    #[error("gradation: {0}")]
+    Gradation(#[from] ExpressionError),
+    /// The background mesh is no size field.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The gradation function's value is no spacing.
+    #[error("the gradation gives {value} at {at}: a spacing must be positive and finite")]
+    BadSpacing {
+        /// Where.
+        at: Point2,
+        /// The function's value.
+        value: f64,
+    },
 }
 
 /// Meshes a domain: graded triangulation by an advancing front (SPEC 7).
@@ -146,6 +167,7 @@ pub fn mesh_plc(
     observer: &mut dyn Observer,
 ) -> Result<Meshed, MeshError> {
     options.check()?;
+    options.table.as_deref().map_or(Ok(()), SpacingTable::check)?;
     let scale = Scale::of(&plc.points);
     scale.shrink(&mut plc);
 
@@ -153,31 +175,44 @@ pub fn mesh_plc(
     let background = Background::new(&plc)?;
 
     observer.stage(Stage::Size);
-    let fields = Fields::new(&background, options, &scale);
-    let prediction = fields.predict(options.triangles_max);
-    if prediction.triangles > options.triangles_max as f64 {
-        return Err(MeshError::TooMany {
-            predicted: prediction.triangles,
-            stopped: prediction.stopped,
-            limit: options.triangles_max,
-        });
-    }
+    let control = Control { background: &background, options, scale: &scale };
+    let (fields, prediction) = control.fields()?;
     if !observer.predicted(prediction) {
         return Err(FrontError::Stopped.into());
     }
+    let mut mesh = |fields: &Fields, prediction: Prediction| {
+        mesh_field(&background, fields, prediction, options, &scale, observer)
+    };
+    let meshed = mesh(&fields, prediction)?;
+    match options.count {
+        Count::Target(target) => control.hit(target, meshed, mesh),
+        Count::Field | Count::Coarsen => Ok(meshed),
+    }
+}
 
+/// Front, improvement and plain arrays for one size field.
+fn mesh_field(
+    background: &Background,
+    fields: &Fields,
+    prediction: Prediction,
+    options: &Options,
+    scale: &Scale,
+    observer: &mut dyn Observer,
+) -> Result<Meshed, MeshError> {
     observer.stage(Stage::Front);
-    let mut laid = lay(&fields, options, prediction, &scale, observer)?;
+    let mut laid = lay(fields, options, prediction, scale, observer)?;
     let borders = border_half_edges(&laid.mesh, background.edges.len());
-    join_constraints(&mut laid.mesh, &background, &borders);
+    join_constraints(&mut laid.mesh, background, &borders);
 
     observer.stage(Stage::Improve);
     let fixed = background.points.len();
-    let improved =
+    let improve =
         improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
 
     observer.stage(Stage::Collect);
-    Ok(collect(laid, &background, improved, prediction, &scale))
+    let fit = fit::fit(fields, &laid, fixed);
+    let made = Made { prediction, improve, fit };
+    Ok(collect(laid, background, made, scale))
 }
 
 /// Lays the triangles: by the front, or none but the background's own.
@@ -200,7 +235,10 @@ fn lay(
         vertices_max: backstop(prediction),
         quantum: scale.quantum(),
     };
-    Ok(front::advance(start, fields.field(), front_options, &mut |n| observer.progress(n))?)
+    let mut progress = |n| fields.sound().is_ok() && observer.progress(n);
+    let laid = front::advance(start, fields.field(), front_options, &mut progress);
+    fields.sound()?;
+    Ok(laid?)
 }
 
 /// New vertices at which the front gives up: three times as many as predicted.
@@ -244,12 +282,18 @@ fn join_constraints(
     debug_assert!(waiting.is_empty(), "an interior constraint with one side");
 }
 
+/// What is told of a mesh beside it.
+struct Made {
+    prediction: Prediction,
+    improve: ImproveStats,
+    fit: Option<Fit>,
+}
+
 /// Plain arrays in the user's coordinates, without points that no triangle uses.
 fn collect(
     laid: FrontMesh,
     background: &Background,
-    improve: ImproveStats,
-    prediction: Prediction,
+    made: Made,
     scale: &Scale,
 ) -> Meshed {
     let FrontMesh { points, mesh: topology, spacing, stats } = laid;
@@ -264,7 +308,8 @@ fn collect(
     let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
     let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
     let mesh = Mesh { points, triangles, edges, regions };
-    Meshed { mesh, spacing, prediction, front: stats, improve }
+    let Made { prediction, improve, fit } = made;
+    Meshed { mesh, spacing, prediction, front: stats, improve, fit }
 }
 
 fn region_markers(topology: &Triangulation, background: &Background) -> Vec<i32> {

@@ -9,6 +9,7 @@ use super::forms::{OutputFile, OutputForm, is_read, output_files};
 use super::input::Input;
 use super::input::is_dash;
 use super::mesh_file::{self, Drawing, malformed, parse};
+use super::size_file::load_size_field;
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
@@ -19,10 +20,11 @@ use crate::domain::Domain;
 use crate::domain::validate::{Plc, validate};
 use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
 use crate::mesh::MeshData;
-use crate::mesher::{MeshError, Meshed, Observer, Options, mesh_plc};
+use crate::mesher::{Count, Fit, MeshError, Meshed, Observer, Options, mesh_plc};
 use crate::size::Prediction;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Runs the verb.
@@ -38,7 +40,10 @@ pub fn run(
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
-    let options = arguments.options.options();
+    let mut options = arguments.options.options();
+    if let Some(path) = &arguments.options.size_field {
+        options.table = Some(Arc::new(load_size_field(path)?));
+    }
     // Staged before the long work: a target that cannot be written is known now.
     let mut targets = paths(&files);
     targets.extend(arguments.certificate.clone());
@@ -53,6 +58,9 @@ pub fn run(
     let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
     summary.note(&meshed);
+    if let Count::Target(target) = options.count {
+        summary.target = Some(target);
+    }
     write_all(&mut outputs, &files, &meshed)?;
     if !arguments.no_check {
         watch.begin("read back");
@@ -107,9 +115,14 @@ pub fn no_mesh(error: &MeshError) -> Failure {
         MeshError::Invalid(_) | MeshError::Background(_) => Failure::findings(vec![diagnostic]),
         MeshError::TooMany { .. } => Failure::cannot_run(
             diagnostic
-                .help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
+                .help("`--dry-run` prints the prediction; a larger --max-triangles allows it")
+                .help("--coarsen takes the field that fits, --target COUNT any other"),
         ),
-        MeshError::Front(_) | MeshError::Options(_) => Failure::cannot_run(diagnostic),
+        MeshError::Front(_)
+        | MeshError::Options(_)
+        | MeshError::Gradation(_)
+        | MeshError::Table(_)
+        | MeshError::BadSpacing { .. } => Failure::cannot_run(diagnostic),
     }
 }
 
@@ -214,12 +227,17 @@ fn certify(
     Ok(Certificate::new(report, &CheckOptions::default(), mesh, Some(domain)))
 }
 
+/// A mesh this near to its target has reached it.
+const TARGET_TOLERANCE: f64 = 0.05;
+
 /// What is told of a run.
 struct Summary {
     name: String,
     points: usize,
     prediction: Option<Prediction>,
     mesh: Option<(usize, usize)>,
+    fit: Option<Fit>,
+    target: Option<usize>,
     check: Option<(String, Report)>,
     written: Vec<PathBuf>,
     far_field: Option<Farfield>,
@@ -232,6 +250,8 @@ impl Summary {
             points: domain.points.len(),
             prediction: None,
             mesh: None,
+            fit: None,
+            target: None,
             check: None,
             written: Vec::new(),
             far_field,
@@ -241,6 +261,19 @@ impl Summary {
     fn note(&mut self, meshed: &Meshed) {
         self.prediction = Some(meshed.prediction);
         self.mesh = Some((meshed.mesh.points.len(), meshed.mesh.triangles.len()));
+        self.fit = meshed.fit;
+    }
+
+    /// What to say when the target was not reached: the boundary alone may ask for more or less.
+    fn missed_target(&self) -> Option<String> {
+        let (target, (_, triangles)) = (self.target?, self.mesh?);
+        let ratio = triangles as f64 / target as f64;
+        ((ratio - 1.0).abs() > TARGET_TOLERANCE).then(|| {
+            format!(
+                "the target of {} triangles is out of reach with this boundary",
+                count(target as u64)
+            )
+        })
     }
 
     fn exit(&self) -> u8 {
@@ -265,6 +298,16 @@ impl Summary {
         if let Some((points, triangles)) = self.mesh {
             let [triangles, points] = [triangles, points].map(|n| count(n as u64));
             line("meshed", format!("{triangles} triangles, {points} points"));
+        }
+        if let Some(fit) = self.fit {
+            let [low, median, high] = [fit.low, fit.median, fit.high];
+            line(
+                "size",
+                format!("edge length / spacing {low:.2} (1 %), {median:.2} (50 %), {high:.2} (99 %)"),
+            );
+        }
+        if let Some(text) = self.missed_target() {
+            line("target", text);
         }
         match &self.check {
             Some((name, report)) => {
@@ -323,6 +366,12 @@ impl Summary {
             "predicted": self.prediction.map(|p| p.triangles),
             "points": self.mesh.map(|(points, _)| points),
             "triangles": self.mesh.map(|(_, triangles)| triangles),
+            "edge_length_over_spacing": self.fit.map(|fit| json!({
+                "percentile_1": fit.low,
+                "median": fit.median,
+                "percentile_99": fit.high,
+                "edges": fit.edges,
+            })),
             "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
             "written": written,
             "seconds": times,
