@@ -206,8 +206,8 @@ fn mesh_field(
 
     observer.stage(Stage::Improve);
     let fixed = background.points.len();
-    let improve =
-        improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
+    let FrontMesh { mesh, points, spacing, .. } = &mut laid;
+    let improve = improve(mesh, points, spacing, fixed, scale.quantum(), options.improve);
 
     observer.stage(Stage::Collect);
     let fit = fit::fit(fields, &laid, fixed);
@@ -290,12 +290,7 @@ struct Made {
 }
 
 /// Plain arrays in the user's coordinates, without points that no triangle uses.
-fn collect(
-    laid: FrontMesh,
-    background: &Background,
-    made: Made,
-    scale: &Scale,
-) -> Meshed {
+fn collect(laid: FrontMesh, background: &Background, made: Made, scale: &Scale) -> Meshed {
     let FrontMesh { points, mesh: topology, spacing, stats } = laid;
     let mut triangles: Vec<[u32; 3]> =
         topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();

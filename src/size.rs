@@ -4,6 +4,7 @@
 //! candidates and choose positions; no decision about validity rests on them.
 
 mod boxes;
+mod coarse;
 mod composed;
 mod custom;
 mod direct;
@@ -16,6 +17,7 @@ mod sources;
 mod spacing;
 mod table;
 
+pub use coarse::CoarseField;
 pub use composed::{Composed, RegionCaps};
 pub use custom::{BadSpacing, ExpressionField, Inputs};
 pub use direct::DirectField;

@@ -60,7 +60,7 @@ pub fn square(n: u32) -> Domain {
 }
 
 /// NACA 0012 of `n` points in a circle of 15 chords with `m`.
-pub fn naca(n: usize, m: u32) -> Domain {
+pub fn naca(n: u32, m: u32) -> Domain {
     let section = symmetric_section(0.12, n);
     rings(&[circle(0.5, 0.0, 15.0, m), section])
 }
@@ -125,12 +125,17 @@ fn channel() -> Domain {
         let x = f64::from(k) / 10.0;
         Point2::new(x, 0.4 * libm::sin(x * PI / 3.0) + side)
     };
-    rings(&[(0..=120).map(|k| wall(k, -0.3)).chain((0..=120).rev().map(|k| wall(k, 0.3))).collect()])
+    rings(&[(0..=120)
+        .map(|k| wall(k, -0.3))
+        .chain((0..=120).rev().map(|k| wall(k, 0.3)))
+        .collect()])
 }
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// A golden domain.
 fn golden(file: &str) -> Domain {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(file);
+    let path = Path::new(ROOT).join("tests/golden").join(file);
     let bytes = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let form = DomainForm::from_path(&path).expect("a golden domain's form");
     read_domain(&bytes, form, &ReadOptions::default()).expect("a golden domain is sound")

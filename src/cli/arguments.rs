@@ -196,8 +196,13 @@ pub struct MeshOptions {
     /// Make about this many triangles: the field becomes coarser or finer until they come out.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     pub target: Option<u32>,
-    /// Leave out the smoothing after the front.
-    #[arg(long)]
+    /// Effort after the front: 0 smooths, 1 also repairs the worst places, 2 all defects of the
+    /// lattice it can, 3 until nothing gets better; each some ten times as long as the one before.
+    #[arg(long, value_name = "LEVEL", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u8).range(0..=3))]
+    pub optimize: u8,
+    /// Leave out all improvement after the front.
+    #[arg(long, conflicts_with = "optimize")]
     pub no_improve: bool,
 }
 
@@ -238,7 +243,10 @@ impl MeshOptions {
                 Rules::Hard => front::Rules::Hard,
             },
             triangles_max: self.max_triangles as usize,
-            improve: if self.no_improve { ImproveOptions { sweeps: 0 } } else { defaults.improve },
+            improve: match self.no_improve {
+                true => ImproveOptions::NONE,
+                false => ImproveOptions::level(self.optimize),
+            },
             ..defaults
         }
     }
@@ -627,9 +635,7 @@ fn parse_source(text: &str) -> Result<SizeSource, String> {
     let source = match numbers[..] {
         [x, y, h] => SizeSource::point(Point2::new(x, y), h, 0.0),
         [x, y, h, radius] => SizeSource::point(Point2::new(x, y), h, radius),
-        [x1, y1, x2, y2, h] => {
-            SizeSource::line([Point2::new(x1, y1), Point2::new(x2, y2)], h)
-        }
+        [x1, y1, x2, y2, h] => SizeSource::line([Point2::new(x1, y1), Point2::new(x2, y2)], h),
         _ => return Err("write it as X,Y,H or X,Y,H,RADIUS, or as X1,Y1,X2,Y2,H".into()),
     };
     if source.is_sound() {

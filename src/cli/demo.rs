@@ -38,11 +38,8 @@ struct Case {
 }
 
 fn cases() -> [Case; 3] {
-    let literal = Options {
-        gradation: Gradation::Mean,
-        density: Density::AllEdges,
-        ..Options::default()
-    };
+    let literal =
+        Options { gradation: Gradation::Mean, density: Density::AllEdges, ..Options::default() };
     [
         Case {
             name: "graded",

@@ -9,9 +9,9 @@ use super::forms::{OutputFile, OutputForm, is_read, output_files};
 use super::input::Input;
 use super::input::is_dash;
 use super::mesh_file::{self, Drawing, malformed, parse};
-use super::size_file::load_size_field;
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
+use super::size_file::load_size_field;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
@@ -303,7 +303,9 @@ impl Summary {
             let [low, median, high] = [fit.low, fit.median, fit.high];
             line(
                 "size",
-                format!("edge length / spacing {low:.2} (1 %), {median:.2} (50 %), {high:.2} (99 %)"),
+                format!(
+                    "edge length / spacing {low:.2} (1 %), {median:.2} (50 %), {high:.2} (99 %)"
+                ),
             );
         }
         if let Some(text) = self.missed_target() {

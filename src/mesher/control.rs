@@ -11,13 +11,15 @@ use crate::background::Background;
 use crate::size::Prediction;
 
 /// Slopes between which coarseness is spent on the growth field.
-const SLOPE: [f64; 2] = [0.1, 0.5];
+const SLOPE: [f64; 2] = [0.12, 0.5];
 /// Octaves of coarseness searched either way.
-const OCTAVES: f64 = 30.0;
-/// A prediction this near to what is wanted is near enough.
-const NEAR: f64 = 0.004;
-/// Halvings of the interval of coarseness.
-const HALVINGS: u32 = 40;
+const OCTAVES: f64 = 12.0;
+/// A prediction this near to what is wanted, in octaves, is near enough.
+const NEAR: f64 = 0.008;
+/// Fields tried for one prediction.
+const STEPS: u32 = 40;
+/// An interval of coarseness below this cannot be told apart.
+const WIDTH_MIN: f64 = 4e-3;
 /// A mesh whose count misses the target by no more than this is taken at once.
 const TARGET_MISS: f64 = 0.02;
 /// Meshes made for one target.
@@ -78,31 +80,38 @@ impl Control<'_> {
         Tuning { growth: tuned, factor: ratio * (growth / tuned) }
     }
 
-    /// The field whose prediction is nearest to `wanted`, by bisection.
+    /// The field whose prediction is near `wanted`, by the rule of false position on logarithms,
+    /// from the interval's middle where that rule creeps.
     fn fitting(&self, wanted: f64) -> Result<(Fields, Prediction), MeshError> {
-        let enough = (4.0 * wanted) as usize + 1000;
-        let (mut fine, mut coarse) = (-OCTAVES, OCTAVES);
-        let mut found = self.at(0.0, enough)?;
-        let mut middle = 0.0;
-        for _ in 0..HALVINGS {
-            let ratio = found.1.triangles / wanted;
-            if (ratio - 1.0).abs() <= NEAR {
+        let enough = (16.0 * wanted) as usize + 1000;
+        let (mut fine, mut coarse) = ((-OCTAVES, None), (OCTAVES, None));
+        let mut at = 0.0;
+        let mut found = self.at(at, enough)?;
+        for step in 0..STEPS {
+            let excess = libm::log2(found.1.triangles / wanted);
+            if excess.abs() <= NEAR {
                 break;
             }
-            if ratio > 1.0 {
-                fine = middle;
+            // A stopped prediction says only that it is too fine.
+            let known = (!found.1.stopped).then_some(excess);
+            if excess > 0.0 {
+                fine = (at, known);
             } else {
-                coarse = middle;
+                coarse = (at, known);
             }
-            // Counts go with the square of lengths: half the octaves that are missing, while that
-            // stays inside, and the middle otherwise.
-            let guess = middle + 0.5 * libm::log2(ratio);
-            let inside = fine + 0.02 * (coarse - fine)..coarse - 0.02 * (coarse - fine);
-            middle = if inside.contains(&guess) { guess } else { 0.5 * (fine + coarse) };
-            if coarse - fine < 1e-4 {
+            let width = coarse.0 - fine.0;
+            if width < WIDTH_MIN {
                 break;
             }
-            found = self.at(middle, enough)?;
+            at = match (fine.1, coarse.1) {
+                (Some(above), Some(below)) if step % 3 != 2 => {
+                    fine.0 + width * (above / (above - below)).clamp(0.05, 0.95)
+                }
+                (Some(above), None) => (fine.0 + above).min(fine.0 + 0.5 * width),
+                (None, Some(below)) => (coarse.0 + below).max(coarse.0 - 0.5 * width),
+                _ => 0.5 * (fine.0 + coarse.0),
+            };
+            found = self.at(at, enough)?;
         }
         Ok(found)
     }
@@ -125,6 +134,10 @@ impl Control<'_> {
             wanted *= target as f64 / count;
             let (fields, prediction) = self.fitting(wanted)?;
             if prediction.triangles > self.options.triangles_max as f64 {
+                break;
+            }
+            if prediction == best.prediction {
+                // The boundary alone decides.
                 break;
             }
             let next = mesh(&fields, prediction)?;

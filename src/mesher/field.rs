@@ -7,9 +7,9 @@ use crate::background::{Background, FrontEdge, INSIDE};
 use crate::front::Start;
 use crate::point::Point2;
 use crate::size::{
-    Base, Composed, Density, DirectField, Expression, ExpressionField, GrowthField, Hint, Inputs,
-    NodalField, NodalRule, Prediction, RegionCaps, SizeField, SizeSource, Source, SourceField,
-    SpacingTable, TableField, growth_limit, node_spacing, predict,
+    Base, CoarseField, Composed, Density, DirectField, Expression, ExpressionField, GrowthField,
+    Hint, Inputs, NodalField, NodalRule, Prediction, RegionCaps, SizeField, SizeSource, Source,
+    SourceField, SpacingTable, TableField, growth_limit, node_spacing, predict,
 };
 use crate::triangulation::{TriangleId, Triangulation, VertexId};
 use std::collections::HashMap; // lookups only
@@ -33,6 +33,8 @@ pub(super) struct Fields {
     field: SizeField,
     /// What the front can reach of `field` when sides are clamped to their base edge.
     reach: Option<GrowthField>,
+    /// How fine the front can be beside boundary edges that are longer than `field` wants.
+    coarse: Option<CoarseField>,
 }
 
 impl Fields {
@@ -50,11 +52,13 @@ impl Fields {
         let points = background.points.clone();
         let boundary_spacing = node_spacing(&points, segments(&edges));
         let field = SizeField::Uniform(1.0);
-        let mut fields = Self { points, region, edges, boundary_spacing, field, reach: None };
+        let (reach, coarse) = (None, None);
+        let mut fields = Self { points, region, edges, boundary_spacing, field, reach, coarse };
         let base = fields.base(options, scale, tuning)?;
         let bare_reach = fields.reach_of(&base, options, tuning);
         fields.field = fields.composed(base, background, options, scale, tuning);
         fields.reach = bare_reach;
+        fields.coarse = fields.coarse_edges();
         Ok(fields)
     }
 
@@ -244,19 +248,42 @@ impl Fields {
             _ => options.clamp,
         };
         let slope = (factor - 1.0).max(0.0) / (0.433_012_701_892_219_3 * (factor + 1.0));
+        // Where the slope is bounded anyhow, that bound must not be the tighter one.
+        let slope = if limited { slope.max(tuning.factor * tuning.growth) } else { slope };
         Some(GrowthField::new(&self.sources(&self.boundary_spacing), slope))
+    }
+
+    /// Edges that are much longer than the field wants at their middle.
+    fn coarse_edges(&self) -> Option<CoarseField> {
+        if matches!(self.field, SizeField::BaseLength(_) | SizeField::Growth(_)) {
+            return None;
+        }
+        let coarse: Vec<[Point2; 2]> = self
+            .edges
+            .iter()
+            .filter_map(|edge| {
+                let [a, b] = edge.vertices.map(|v| self.points[v.index()]);
+                let middle = Point2::new(0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y);
+                let (length, t) = (a.distance(b), edge.half_edge.triangle());
+                let wanted = self.field.at(middle, Base { length }, &mut Hint(t));
+                (length > COARSE_EDGE * wanted).then_some([a, b])
+            })
+            .collect();
+        (!coarse.is_empty()).then(|| CoarseField::new(coarse))
     }
 
     /// The background triangles inside and their corners.
     fn cover(&self) -> impl Iterator<Item = (TriangleId, [Point2; 3])> + '_ {
-        self.region
-            .triangles()
-            .map(|t| (t, self.region.corners(t).map(|v| self.points[v.index()])))
+        self.region.triangles().map(|t| (t, self.region.corners(t).map(|v| self.points[v.index()])))
     }
 
     /// Predicts the number of triangles; stops soon after `limit`.
     pub(super) fn predict(&self, limit: usize) -> Prediction {
-        predict(self.cover(), |t, p| self.reachable(t, p), limit as f64)
+        let at = |t: TriangleId, p: Point2| {
+            let finest = self.coarse.as_ref().map_or(0.0, |coarse| coarse.at(p));
+            self.reachable(t, p).max(finest)
+        };
+        predict(self.cover(), at, limit as f64)
     }
 
     /// The spacing that the front will reach at a point of a background triangle.
@@ -295,6 +322,8 @@ impl Fields {
     }
 }
 
+/// Boundary edges longer than this many wanted spacings count as coarse.
+const COARSE_EDGE: f64 = 1.7;
 /// Side of an equilateral triangle over the root of its area: 2 / 3^(1/4).
 const SIDE_PER_ROOT_AREA: f64 = 1.519_671_371_303_185;
 

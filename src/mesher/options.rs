@@ -137,11 +137,21 @@ impl Options {
             demand("spacing-at", h, is_length(h), "positive and finite")?;
         }
         for source in &self.sources {
-            demand("source", source.spacing, source.is_sound(), "a positive and finite spacing at a finite place")?;
+            demand(
+                "source",
+                source.spacing,
+                source.is_sound(),
+                "a positive and finite spacing at a finite place",
+            )?;
         }
         if let Count::Target(n) = self.count {
             let wanted = n as f64;
-            demand("target", wanted, (1..=self.triangles_max).contains(&n), "from 1 to --max-triangles")?;
+            demand(
+                "target",
+                wanted,
+                (1..=self.triangles_max).contains(&n),
+                "from 1 to --max-triangles",
+            )?;
         }
         Ok(())
     }

@@ -113,7 +113,10 @@ mod tests {
         assert_eq!(at(&field, 0.0, 0.0), 6.0);
         let source = SizeSource::point(Point2::new(0.0, 0.0), 1.0, 0.0);
         field.sources = Some(SourceField::new(vec![source], 0.5));
-        assert_eq!([at(&field, 0.0, 0.0), at(&field, 0.0, 4.0), at(&field, 99.0, 0.0)], [1.0, 3.0, 6.0]);
+        assert_eq!(
+            [at(&field, 0.0, 0.0), at(&field, 0.0, 4.0), at(&field, 99.0, 0.0)],
+            [1.0, 3.0, 6.0]
+        );
         let points = [[90.0, 0.0], [99.0, 0.0], [90.0, 9.0]].map(Point2::from).to_vec();
         let table = SpacingTable { points, spacing: vec![2.0; 3], triangles: vec![[0, 1, 2]] };
         field.table = Some(TableField::new(&table, 0.5));

@@ -118,7 +118,7 @@ impl ExpressionField {
 mod tests {
     use super::*;
     use crate::size::{NodalRule, Source};
-    use crate::triangulation::{Triangulation, TriangleId, VertexId};
+    use crate::triangulation::{TriangleId, Triangulation, VertexId};
 
     fn inputs() -> Inputs {
         let mut background = Triangulation::default();

@@ -184,8 +184,14 @@ impl MakeOperators<f64> for Functions {
             Operator::make_bin_unary("+", binary(|a, b| a + b, 0, true), |a| a),
             Operator::make_bin_unary("-", binary(|a, b| a - b, 1, false), |a: f64| -a),
             // NaN must not vanish: f64::min and f64::max would drop it.
-            Operator::make_bin("min", binary(|a, b| if a < b || a.is_nan() { a } else { b }, 0, false)),
-            Operator::make_bin("max", binary(|a, b| if a > b || a.is_nan() { a } else { b }, 0, false)),
+            Operator::make_bin(
+                "min",
+                binary(|a, b| if a < b || a.is_nan() { a } else { b }, 0, false),
+            ),
+            Operator::make_bin(
+                "max",
+                binary(|a, b| if a > b || a.is_nan() { a } else { b }, 0, false),
+            ),
             Operator::make_unary("abs", f64::abs),
             Operator::make_unary("sqrt", libm::sqrt),
             Operator::make_unary("exp", libm::exp),
@@ -251,7 +257,9 @@ mod tests {
     // spec: H7
     #[test]
     fn what_is_not_a_number_stays_so() {
-        for text in ["min(1, log(x))", "min(log(x), 1)", "max(1, log(x))", "max(log(x), 1)", "0/(x+3)"] {
+        for text in
+            ["min(1, log(x))", "min(log(x), 1)", "max(1, log(x))", "max(log(x), 1)", "0/(x+3)"]
+        {
             assert!(value(text).is_nan(), "{text}: {}", value(text));
         }
         assert_eq!(value("1/(x+3)"), f64::INFINITY);

@@ -2,7 +2,7 @@
 //! spacing at the boundary.
 //!
 //! The field is sampled on pieces of the background triangles about as wide as its values there;
-//! every sample that asks for less than growth from the boundary allows becomes a source of its own
+//! where they are steeper than the slope, the low side becomes a source of its own
 //! (Persson 2006 solves the same limit on a grid).
 
 use super::growth::{GrowthField, Source};
@@ -10,7 +10,9 @@ use crate::point::Point2;
 use crate::triangulation::TriangleId;
 
 /// Pieces are cut until their longest side is at most this many spacings.
-const PIECE_WIDTH: f64 = 1.0;
+const PIECE_WIDTH: f64 = 1.5;
+/// A piece is steep when its spacings differ by more than this share of what growth allows.
+const STEEP: f64 = 0.5;
 /// Halvings of a background triangle.
 const DEPTH_MAX: u32 = 44;
 /// A field that asks for more samples is finer than any mesh that passes its limit; it is then
@@ -35,15 +37,19 @@ pub fn growth_limit(
         stack.push((triangle.map(sample), 0));
         while let Some((piece, depth)) = stack.pop() {
             let centre = sample(centroid(&piece));
-            sources.extend([centre, piece[0]].iter().filter(|s| s.spacing < ceiling.at(s.at)));
-            let least = piece.iter().fold(centre.spacing, |h, s| h.min(s.spacing));
             let (longest, length) = longest_side(&piece);
+            // Where the field itself is flat it is its own limit; what spreads is the low side of
+            // what is steep.
+            let low = piece.iter().fold(centre, |l, s| if s.spacing < l.spacing { *s } else { l });
+            let high = piece.iter().fold(centre.spacing, |h, s| h.max(s.spacing));
+            if high - low.spacing > STEEP * growth * length && low.spacing < ceiling.at(low.at) {
+                sources.push(low);
+            }
+            let least = low.spacing;
             if length > PIECE_WIDTH * least && depth < DEPTH_MAX && sources.len() < SAMPLES_MAX {
                 let [a, b, c] = [0, 1, 2].map(|i| piece[(longest + i) % 3]);
-                let middle = sample(Point2::new(
-                    0.5 * a.at.x + 0.5 * b.at.x,
-                    0.5 * a.at.y + 0.5 * b.at.y,
-                ));
+                let middle =
+                    sample(Point2::new(0.5 * a.at.x + 0.5 * b.at.x, 0.5 * a.at.y + 0.5 * b.at.y));
                 stack.extend([([middle, b, c], depth + 1), ([a, middle, c], depth + 1)]);
             }
         }

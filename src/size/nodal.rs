@@ -63,8 +63,9 @@ impl NodalField {
         *hint = Hint(t);
         let corners = self.background.corners(t).map(VertexId::index);
         let at = |i: usize| self.points[corners[i]];
-        let first =
-            [1, 2].into_iter().fold(0, |f, i| if at(i).lexicographic(at(f)).is_lt() { i } else { f });
+        let first = [1, 2]
+            .into_iter()
+            .fold(0, |f, i| if at(i).lexicographic(at(f)).is_lt() { i } else { f });
         let order = [first, (first + 1) % 3, (first + 2) % 3];
         (order.map(|i| weights[i]), order.map(|i| self.spacing[corners[i]]))
     }

@@ -36,7 +36,9 @@ pub enum TableError {
         value: f64,
     },
     /// A triangle names a node that is not there, or one at no finite place.
-    #[error("triangle {triangle} of the background mesh names node {node}, which has no finite place")]
+    #[error(
+        "triangle {triangle} of the background mesh names node {node}, which has no finite place"
+    )]
     Node {
         /// Index of the triangle.
         triangle: usize,
@@ -101,8 +103,10 @@ impl Piece {
             return (0.0, mean);
         }
         let side = |i: usize| {
-            let (ends, h) =
-                ([i, (i + 1) % 3].map(|k| self.corners[k]), [i, (i + 1) % 3].map(|k| self.spacing[k]));
+            let (ends, h) = (
+                [i, (i + 1) % 3].map(|k| self.corners[k]),
+                [i, (i + 1) % 3].map(|k| self.spacing[k]),
+            );
             let t = nearest_on_segment(ends, p);
             (between(ends, t).distance(p), (1.0 - t) * h[0] + t * h[1])
         };
@@ -147,9 +151,8 @@ impl TableField {
             Source { at: table.points[v], spacing: table.spacing[v] }
         };
         let mut sources: Vec<Source> = nodes.into_iter().map(source).collect();
-        sources.sort_by(|s, t| {
-            s.at.lexicographic(t.at).then_with(|| s.spacing.total_cmp(&t.spacing))
-        });
+        sources
+            .sort_by(|s, t| s.at.lexicographic(t.at).then_with(|| s.spacing.total_cmp(&t.spacing)));
         Self { pieces, limit: GrowthField::new(&sources, growth) }
     }
 
@@ -170,7 +173,11 @@ mod tests {
     fn table() -> SpacingTable {
         let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(Point2::from).to_vec();
         // The second triangle is clockwise: files say either.
-        SpacingTable { points, spacing: vec![1.0, 1.5, 2.0, 1.5], triangles: vec![[0, 1, 2], [0, 3, 2]] }
+        SpacingTable {
+            points,
+            spacing: vec![1.0, 1.5, 2.0, 1.5],
+            triangles: vec![[0, 1, 2], [0, 3, 2]],
+        }
     }
 
     // spec: H9
