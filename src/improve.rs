@@ -9,10 +9,12 @@ mod defects;
 mod flip;
 mod patch;
 mod smooth;
+mod split;
 
 use defects::Defects;
 pub use flip::flip_to_delaunay;
 use smooth::Smoother;
+pub use split::{SplitOptions, split_long_edges};
 
 use crate::point::Point2;
 use crate::triangulation::Triangulation;

@@ -13,7 +13,7 @@ use crate::background::{Background, BackgroundError};
 use crate::domain::Domain;
 use crate::domain::validate::{Fault, Plc, validate};
 use crate::front::{self, FrontError, FrontMesh, FrontOptions, FrontStats, Start};
-use crate::improve::{ImproveStats, improve};
+use crate::improve::{ImproveStats, SplitOptions, improve, split_long_edges};
 use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
 use crate::size::{ExpressionError, Prediction, SpacingTable, TableError};
@@ -205,6 +205,9 @@ fn mesh_field(
     join_constraints(&mut laid.mesh, background, &borders);
 
     observer.stage(Stage::Improve);
+    if fields.has_coarse_boundary() && options.method != Method::DelaunayInitial {
+        split_coarse(&mut laid, fields, prediction, scale)?;
+    }
     let fixed = background.points.len();
     let FrontMesh { mesh, points, spacing, .. } = &mut laid;
     let improve = improve(mesh, points, spacing, fixed, scale.quantum(), options.improve);
@@ -239,6 +242,24 @@ fn lay(
     let laid = front::advance(start, fields.field(), front_options, &mut progress);
     fields.sound()?;
     Ok(laid?)
+}
+
+/// Splits what the front has left too large between boundaries coarser than the field.
+fn split_coarse(
+    laid: &mut FrontMesh,
+    fields: &Fields,
+    prediction: Prediction,
+    scale: &Scale,
+) -> Result<(), MeshError> {
+    let hints = fields.hints_by_tag();
+    let FrontMesh { mesh, points, spacing, .. } = laid;
+    let new_max = backstop(prediction);
+    let points_max = fields.start_count() + new_max;
+    let options = SplitOptions { quantum: scale.quantum(), points_max };
+    let wanted = |tag: u32, p: Point2| fields.attainable(p, hints[&tag]);
+    let splits = split_long_edges(mesh, points, spacing, wanted, options);
+    fields.sound()?;
+    splits.map(|_| ()).ok_or_else(|| FrontError::Budget(new_max).into())
 }
 
 /// New vertices at which the front gives up: three times as many as predicted.

@@ -237,7 +237,7 @@ fn a_front_takes_exactly_as_many_steps_as_the_argument_says() {
         if options.method == Method::DelaunayInitial {
             return;
         }
-        let initial = Options { method: Method::DelaunayInitial, ..*options };
+        let initial = Options { method: Method::DelaunayInitial, ..options.clone() };
         let open = sketch.mesh(&initial).mesh.triangles.len() as u64;
         let run = sketch.mesh(options);
         let steps = run.front.accepted_existing + run.front.inserted;

@@ -100,3 +100,21 @@ fn senseless_sizes_are_exit_2_and_name_what_is_wrong() {
         assert!(!folder.path().join("out.off").exists(), "{arguments:?} left a file");
     }
 }
+
+// spec: K10 C70
+#[test]
+fn a_mesh_made_by_a_field_fits_it_when_checked() {
+    let folder = folder();
+    let _ = summary(&run(folder.path(), &["--size-field", "size.pos", "-o", "out.off"]));
+    let check = |field: &str| {
+        Command::new(env!("CARGO_BIN_EXE_trigrade"))
+            .args(["check", "out.off", "--json", "--size", field])
+            .current_dir(folder.path())
+            .output()
+            .expect("the program runs")
+    };
+    let report = summary(&check("size.pos"));
+    let median = report["edge_length_over_spacing"]["median"].as_f64().unwrap();
+    assert!((0.8..1.2).contains(&median), "{median}");
+    assert_eq!(check("absent.pos").status.code(), Some(2));
+}

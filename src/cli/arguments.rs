@@ -319,6 +319,9 @@ pub struct CheckArguments {
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,
+    /// Measure edge lengths against a size field: .msh with $NodeData, .pos, or .vtu.
+    #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+    pub size: Option<PathBuf>,
     /// Write the quality of this mesh, for a later --baseline.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub save_baseline: Option<PathBuf>,

@@ -136,7 +136,7 @@ const SCORED_STEPS: usize = 2;
 const HARD_STEPS: usize = 20;
 const FIXED_POINT_TOLERANCE: f64 = 1e-3;
 /// A base edge this much longer than its spacing is coarse: the boundary forces it.
-const COARSE_BASE: f64 = 1.5;
+const COARSE_BASE: f64 = 1.3;
 /// Beside a coarse base edge a point keeps its clearances from this fraction of the edge.
 const COARSE_REACH: f64 = 0.45;
 /// A corner up to 150 degrees is closed by the triangle next to the trial one.

@@ -243,28 +243,8 @@ impl Patch {
             self.points.pop();
             return false;
         }
-        let outer = hull.map(|h| (self.mesh.across(h), self.mesh.is_constrained(h)));
-        self.mesh.remove(e.triangle());
-        self.mesh.remove(f.triangle());
-        self.fan(&ends, &outer, m);
+        self.mesh.split_edge(e, m);
         true
-    }
-
-    /// Adds the triangles of `m` with the edges of a closed chain around it.
-    fn fan(&mut self, ends: &[[VertexId; 2]], outer: &[(Across, bool)], m: VertexId) {
-        let mut fan: Vec<TriangleId> = Vec::with_capacity(ends.len());
-        for (&[u, v], &(across, constrained)) in ends.iter().zip(outer) {
-            let t = self.mesh.add([u, v, m]);
-            self.mesh.relink(t.half_edge(0), across);
-            if constrained {
-                self.mesh.set_constrained(t.half_edge(0), true);
-            }
-            fan.push(t);
-        }
-        for i in 0..fan.len() {
-            let next = fan[(i + 1) % fan.len()];
-            self.mesh.link(fan[i].half_edge(1), next.half_edge(2));
-        }
     }
 
     /// Replaces the star of a movable vertex by the fan of one of its neighbours, the first from

@@ -66,6 +66,11 @@ impl Fields {
         &self.field
     }
 
+    /// Number of points the front starts with.
+    pub(super) fn start_count(&self) -> usize {
+        self.points.len()
+    }
+
     /// The background triangle at an edge of the initial front.
     pub(super) fn hint_of_edge(&self, edge: u32) -> Option<Hint> {
         self.edges.get(edge as usize).map(|edge| Hint(edge.half_edge.triangle()))
@@ -253,9 +258,41 @@ impl Fields {
         Some(GrowthField::new(&self.sources(&self.boundary_spacing), slope))
     }
 
+    /// Whether the boundary is so coarse somewhere that the front cannot follow the field from it.
+    pub(super) fn has_coarse_boundary(&self) -> bool {
+        self.coarse.is_some()
+    }
+
+    /// For each tag of the background its first triangle.
+    pub(super) fn hints_by_tag(&self) -> HashMap<u32, Hint> {
+        let mut hints = HashMap::new();
+        for t in self.region.triangles() {
+            hints.entry(self.region.tag(t)).or_insert(Hint(t));
+        }
+        hints
+    }
+
+    /// The spacing that a mesh can have at a point, asked for at a background triangle.
+    pub(super) fn attainable(&self, p: Point2, hint: Hint) -> f64 {
+        if self.field.fault().is_some() {
+            // Whoever sums or splits stops at once; `sound` says why.
+            return NOTHING;
+        }
+        let finest = self.coarse.as_ref().map_or(0.0, |coarse| coarse.at(p));
+        self.reachable(hint.0, p).max(finest)
+    }
+
     /// Edges that are much longer than the field wants at their middle.
     fn coarse_edges(&self) -> Option<CoarseField> {
-        if matches!(self.field, SizeField::BaseLength(_) | SizeField::Growth(_)) {
+        let is_followed = match &self.field {
+            // The boundary itself has made this field.
+            SizeField::Growth(_) => false,
+            SizeField::Composed(field) => {
+                field.is_lipschitz() || matches!(field.base, SizeField::Expression(_))
+            }
+            field => field.is_lipschitz() || matches!(field, SizeField::Expression(_)),
+        };
+        if !is_followed {
             return None;
         }
         let coarse: Vec<[Point2; 2]> = self
@@ -279,11 +316,7 @@ impl Fields {
 
     /// Predicts the number of triangles; stops soon after `limit`.
     pub(super) fn predict(&self, limit: usize) -> Prediction {
-        let at = |t: TriangleId, p: Point2| {
-            let finest = self.coarse.as_ref().map_or(0.0, |coarse| coarse.at(p));
-            self.reachable(t, p).max(finest)
-        };
-        predict(self.cover(), at, limit as f64)
+        predict(self.cover(), |t, p| self.attainable(p, Hint(t)), limit as f64)
     }
 
     /// The spacing that the front will reach at a point of a background triangle.
@@ -303,13 +336,15 @@ impl Fields {
 
     /// The state the front starts from.
     pub(super) fn start(&self) -> Start {
-        let mut spacing: Vec<f64> =
-            self.boundary_spacing.iter().map(|h| h.unwrap_or(f64::NAN)).collect();
+        let bounded = self.field.is_lipschitz();
+        let own = |h: &Option<f64>| h.filter(|_| !bounded).unwrap_or(f64::NAN);
+        let mut spacing: Vec<f64> = self.boundary_spacing.iter().map(own).collect();
         for t in self.region.triangles() {
             for v in self.region.corners(t) {
                 let h = &mut spacing[v.index()];
-                if self.field.is_lipschitz() || h.is_nan() {
-                    *h = self.reachable(t, self.points[v.index()]);
+                if bounded || h.is_nan() {
+                    // Between two regions the smaller of their spacings; `min` passes NaN over.
+                    *h = h.min(self.reachable(t, self.points[v.index()]));
                 }
             }
         }
@@ -322,6 +357,8 @@ impl Fields {
     }
 }
 
+/// Below any spacing that passes a limit; its inverse square is finite.
+const NOTHING: f64 = 1e-150;
 /// Boundary edges longer than this many wanted spacings count as coarse.
 const COARSE_EDGE: f64 = 1.7;
 /// Side of an equilateral triangle over the root of its area: 2 / 3^(1/4).

@@ -105,12 +105,13 @@ impl Expression {
     /// The first fault and its column.
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
         scan::check(text)?;
+        let plain = scan::without_exponents(text)?;
         // The scanner has looked at every token: what is left is a disagreement between the two.
         let whole = |error: exmex::ExError| ExpressionError {
             column: 1,
             problem: format!("not understood: {}", error.msg()),
         };
-        let program = FlatEx::<f64, Functions>::parse(text).map_err(whole)?;
+        let program = FlatEx::<f64, Functions>::parse(&plain).map_err(whole)?;
         let slot = |name: &String| {
             Variable::ALL.iter().position(|v| v.name() == name).ok_or_else(|| ExpressionError {
                 column: 1,
@@ -239,6 +240,7 @@ mod tests {
             ("max(min(y, 5), 2)", 5.0),
             ("sqrt(16) + exp(0)", 5.0),
             ("1e-3 + 2.5E+1 + .5", 25.501),
+            ("x*1e-300*1e300", -3.0),
             ("cos(pi)", -1.0),
         ] {
             assert!((value(text) - wanted).abs() < 1e-12, "{text}: {}", value(text));

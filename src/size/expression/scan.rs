@@ -190,6 +190,23 @@ fn tokens(text: &str) -> Result<Vec<Placed<'_>>, ExpressionError> {
     Ok(tokens)
 }
 
+/// The text with each number written without an exponent, which the evaluator does not read in all
+/// forms; a float's shortest decimal reads back to the same bits.
+pub(super) fn without_exponents(text: &str) -> Result<String, ExpressionError> {
+    let mut plain = String::new();
+    for (token, column) in tokens(text)? {
+        match token {
+            Token::Number(word) => match word.parse::<f64>() {
+                Ok(value) => plain.push_str(&value.to_string()),
+                Err(_) => return fault(column, format!("`{word}` is no number")),
+            },
+            Token::Name(name) => plain.push_str(name),
+            Token::Sign(sign) => plain.push(sign),
+        }
+    }
+    Ok(plain)
+}
+
 /// Length of the number at the start: digits, points, an exponent with its sign.
 fn number_length(text: &str) -> usize {
     let mut before = ' ';
