@@ -7,8 +7,25 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const SQUARE: &str = "8 2 0 0\n1 0 0\n2 2 0\n3 4 0\n4 4 2\n5 4 4\n6 2 4\n7 0 4\n8 0 2\n\
-    8 1\n1 1 2 1\n2 2 3 1\n3 3 4 2\n4 4 5 2\n5 5 6 3\n6 6 7 3\n7 7 8 4\n8 8 1 4\n0\n";
+/// A square of side 4 with ten segments a side, markers 1 to 4, in Triangle's form.
+fn square() -> String {
+    let at = |i: u32| match (i / 10, 0.4 * f64::from(i % 10)) {
+        (0, t) => (t, 0.0),
+        (1, t) => (4.0, t),
+        (2, t) => (4.0 - t, 4.0),
+        (_, t) => (0.0, 4.0 - t),
+    };
+    let mut text = "40 2 0 0\n".to_owned();
+    for i in 0..40 {
+        let (x, y) = at(i);
+        text += &format!("{i} {x} {y}\n");
+    }
+    text += "40 1\n";
+    for i in 0..40 {
+        text += &format!("{i} {i} {} {}\n", (i + 1) % 40, 1 + i / 10);
+    }
+    text + "0\n"
+}
 
 const VIEW: &str = "View \"h\" {\nSQ(0,0,0,4,0,0,4,4,0,0,4,0){0.1,0.3,0.3,0.1};\n};\n";
 
@@ -23,7 +40,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary directory");
-    fs::write(folder.path().join("square.poly"), SQUARE).expect("written");
+    fs::write(folder.path().join("square.poly"), square()).expect("written");
     fs::write(folder.path().join("size.pos"), VIEW).expect("written");
     folder
 }

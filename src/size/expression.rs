@@ -8,6 +8,7 @@ mod scan;
 
 use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator};
 use std::fmt;
+use std::sync::Arc;
 
 /// A variable of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +92,8 @@ pub struct ExpressionError {
 #[derive(Clone)]
 pub struct Expression {
     text: String,
-    program: FlatEx<f64, Functions>,
+    /// Shared: it is some kilobytes, and options are copied about.
+    program: Arc<FlatEx<f64, Functions>>,
     /// For each variable of the program its index in [`Values`].
     slots: Vec<usize>,
 }
@@ -119,7 +121,7 @@ impl Expression {
             })
         };
         let slots = program.var_names().iter().map(slot).collect::<Result<_, _>>()?;
-        Ok(Self { text: text.to_owned(), program, slots })
+        Ok(Self { text: text.to_owned(), program: Arc::new(program), slots })
     }
 
     /// As it was written.
