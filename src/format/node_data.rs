@@ -133,8 +133,10 @@ fn read_msh_tags(scanner: &mut Scanner) -> Result<Option<i64>, ReadError> {
     Ok((components == 1).then_some(entries))
 }
 
-/// The elements of a parsed view: name, number of nodes, and the triangles it is made of.
-const POS_ELEMENTS: [(&[u8], usize, &[[u32; 3]]); 6] = [
+/// An element of a parsed view: name, number of nodes, and the triangles it is made of.
+type PosElement = (&'static [u8], usize, &'static [[u32; 3]]);
+
+const POS_ELEMENTS: [PosElement; 6] = [
     (b"SP", 1, &[]),
     (b"SL", 2, &[]),
     (b"ST", 3, &[[0, 1, 2]]),

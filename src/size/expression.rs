@@ -181,7 +181,7 @@ impl MakeOperators<f64> for Functions {
     fn make<'a>() -> Vec<Operator<'a, f64>> {
         let binary = |apply, prio, is_commutative| BinOp { apply, prio, is_commutative };
         vec![
-            Operator::make_bin("^", binary(|a, b| libm::pow(a, b), 4, false)),
+            Operator::make_bin("^", binary(libm::pow, 4, false)),
             Operator::make_bin("*", binary(|a, b| a * b, 2, true)),
             Operator::make_bin("/", binary(|a, b| a / b, 3, false)),
             Operator::make_bin_unary("+", binary(|a, b| a + b, 0, true), |a| a),
