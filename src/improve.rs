@@ -67,6 +67,8 @@ pub struct ImproveStats {
     pub tried: u64,
     /// Changes of topology that were kept.
     pub changes: u64,
+    /// Edges that were halved before all of it, because the front had left them too long.
+    pub splits: u64,
 }
 
 /// Flips and smooths `mesh`, and adds or removes vertices where that makes it better; vertices below

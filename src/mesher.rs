@@ -205,12 +205,14 @@ fn mesh_field(
     join_constraints(&mut laid.mesh, background, &borders);
 
     observer.stage(Stage::Improve);
+    let mut splits = 0;
     if fields.has_coarse_boundary() && options.method != Method::DelaunayInitial {
-        split_coarse(&mut laid, fields, prediction, scale)?;
+        splits = split_coarse(&mut laid, fields, prediction, scale)?;
     }
     let fixed = background.points.len();
     let FrontMesh { mesh, points, spacing, .. } = &mut laid;
-    let improve = improve(mesh, points, spacing, fixed, scale.quantum(), options.improve);
+    let mut improve = improve(mesh, points, spacing, fixed, scale.quantum(), options.improve);
+    improve.splits = splits;
 
     observer.stage(Stage::Collect);
     let fit = fit::fit(fields, &laid, fixed);
@@ -250,7 +252,7 @@ fn split_coarse(
     fields: &Fields,
     prediction: Prediction,
     scale: &Scale,
-) -> Result<(), MeshError> {
+) -> Result<u64, MeshError> {
     let hints = fields.hints_by_tag();
     let FrontMesh { mesh, points, spacing, .. } = laid;
     let new_max = backstop(prediction);
@@ -259,7 +261,7 @@ fn split_coarse(
     let wanted = |tag: u32, p: Point2| fields.attainable(p, hints[&tag]);
     let splits = split_long_edges(mesh, points, spacing, wanted, options);
     fields.sound()?;
-    splits.map(|_| ()).ok_or_else(|| FrontError::Budget(new_max).into())
+    splits.ok_or_else(|| FrontError::Budget(new_max).into())
 }
 
 /// New vertices at which the front gives up: three times as many as predicted.

@@ -19,8 +19,8 @@ const DEPTH_MAX: u32 = 44;
 /// sampled as far as this goes.
 const SAMPLES_MAX: usize = 4_000_000;
 
-/// What limits `field`: the smaller of both is the field limited to the slope `growth` over the triangles of `cover`; `boundary` are the
-/// spacings at the boundary.
+/// What limits `field` over the triangles of `cover`: the smaller of the two is the field limited to
+/// the slope `growth`. `boundary` are the spacings at the boundary.
 ///
 /// Time is proportional to the number of triangles that a mesh of the field would have.
 pub fn growth_limit(
