@@ -45,7 +45,8 @@ pub fn growth_limit(
             if high - low.spacing > STEEP * growth * length && low.spacing < ceiling.at(low.at) {
                 sources.push(low);
             }
-            let least = low.spacing;
+            // The answer is nowhere above the ceiling: samples as wide as that at least.
+            let least = low.spacing.min(ceiling.at(low.at));
             if length > PIECE_WIDTH * least && depth < DEPTH_MAX && sources.len() < SAMPLES_MAX {
                 let [a, b, c] = [0, 1, 2].map(|i| piece[(longest + i) % 3]);
                 let middle =
