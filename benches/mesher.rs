@@ -1,8 +1,16 @@
 //! The pipeline's stages beside spade where it does the same job, and the check of the result.
 //!
 //!     cargo bench --bench mesher
+//!     cargo bench --bench mesher -- quality [LEVEL]     table of quality over fourteen domains
+//!     cargo bench --bench mesher -- worst               the worst cases, each checked
+//!     cargo bench --bench mesher -- growth [SIDE]       time over size, squares up to SIDE segments
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+#[path = "domains/mod.rs"]
+mod domains;
+#[path = "tables/mod.rs"]
+mod tables;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 use spade::Triangulation as _;
 use std::hint::black_box;
 use trigrade::background::Background;
@@ -13,17 +21,6 @@ use trigrade::improve::ImproveOptions;
 use trigrade::mesh::MeshData;
 use trigrade::mesher::{Gradation, Options, Unobserved, mesh_plc};
 use trigrade::point::Point2;
-
-/// The unit square with `n` segments a side.
-fn square(n: u32) -> Domain {
-    let at = |i: u32| f64::from(i) / f64::from(n);
-    let side = |f: fn(f64) -> Point2| (0..n).map(move |i| f(at(i)));
-    let points = side(|t| Point2::new(t, 0.0))
-        .chain(side(|t| Point2::new(1.0, t)))
-        .chain(side(|t| Point2::new(1.0 - t, 1.0)))
-        .chain(side(|t| Point2::new(0.0, 1.0 - t)));
-    ring(points.collect())
-}
 
 /// A Koch curve around a triangle: 3 * 4^depth segments, a coast to triangulate.
 fn coast(depth: u32) -> Domain {
@@ -60,7 +57,7 @@ fn sound(domain: &Domain) -> Plc {
 fn options(sweeps: u32) -> Options {
     Options {
         gradation: Gradation::Uniform,
-        improve: ImproveOptions { sweeps },
+        improve: ImproveOptions { sweeps, ..ImproveOptions::level(u8::from(sweeps > 0)) },
         ..Options::default()
     }
 }
@@ -69,7 +66,7 @@ fn uniform_square(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("uniform square");
     group.sample_size(10);
     for n in [50, 200] {
-        let domain = square(n);
+        let domain = domains::square(n);
         let plc = sound(&domain);
         let run = |sweeps| mesh_plc(plc.clone(), &options(sweeps), &mut Unobserved);
         let mesh = run(4).expect("a square is meshed").mesh;
@@ -135,4 +132,18 @@ fn validation(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, background, uniform_square, validation);
-criterion_main!(benches);
+
+fn main() {
+    let arguments: Vec<String> =
+        std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let number = |default: u32| arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(default);
+    match arguments.first().map(String::as_str) {
+        Some("quality") => tables::quality(number(1).min(3) as u8),
+        Some("worst") => tables::worst(),
+        Some("growth") => tables::growth(number(1000)),
+        _ => {
+            benches();
+            Criterion::default().configure_from_args().final_summary();
+        }
+    }
+}

@@ -30,6 +30,7 @@ mod plane;
 mod points;
 pub mod quality;
 pub mod report;
+pub mod size;
 mod space;
 mod status;
 mod structure;

@@ -22,6 +22,7 @@ mod msh;
 mod msh22;
 mod msh41;
 mod netgen_vol;
+pub mod node_data;
 mod node_ele;
 mod obj;
 mod off;

@@ -1,23 +1,27 @@
 //! The pipeline: a domain in, a mesh out, a line per stage.
 
+mod control;
 mod field;
+mod fit;
 mod options;
 mod refined;
 mod scale;
 
-pub use options::{AreaMax, Gradation, Method, Options, OptionsError};
+pub use fit::Fit;
+pub use options::{AreaMax, Count, Gradation, Method, Options, OptionsError};
 
 use crate::background::{Background, BackgroundError};
 use crate::domain::Domain;
 use crate::domain::validate::{Fault, Plc, validate};
 use crate::front::{self, FrontError, FrontMesh, FrontOptions, FrontStats, Start};
-use crate::improve::{ImproveStats, improve};
+use crate::improve::{ImproveStats, SplitOptions, improve, split_long_edges};
 use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
 use crate::refine::{RefineError, RefineStats};
-use crate::size::Prediction;
-use crate::subdivide::{SplitOptions, TooManyPoints, subdivide};
+use crate::size::{ExpressionError, Prediction, SpacingTable, TableError};
+use crate::subdivide::{self, TooManyPoints, subdivide};
 use crate::triangulation::{Across, HalfEdgeId, Triangulation};
+use control::Control;
 use field::Fields;
 use scale::Scale;
 use std::collections::HashMap; // lookups only
@@ -92,6 +96,8 @@ pub struct Meshed {
     pub refine: Option<RefineStats>,
     /// Points inserted on the boundary and on constraints.
     pub splits: usize,
+    /// How well its edges fit the wanted spacing; `None` when all of them are the domain's.
+    pub fit: Option<Fit>,
 }
 
 /// Why there is no mesh.
@@ -106,7 +112,8 @@ pub enum MeshError {
     /// The prediction is above the limit.
     #[error(
         "the size field asks for {}{predicted:.0} triangles, above the limit of {limit}: raise \
-         --max-triangles, or take a coarser field (a larger --growth or --spacing)",
+         --max-triangles, let --coarsen or --target choose a coarser field, or take one (a larger \
+         --growth or --spacing)",
         if *.stopped { "more than " } else { "about " }
     )]
     TooMany {
@@ -129,6 +136,20 @@ pub enum MeshError {
     /// Options that make no sense.
     #[error(transparent)]
     Options(#[from] OptionsError),
+    /// The gradation function is none for this method.
+    #[error("gradation: {0}")]
+    Gradation(#[from] ExpressionError),
+    /// The background mesh is no size field.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The gradation function's value is no spacing.
+    #[error("the gradation gives {value} at {at}: a spacing must be positive and finite")]
+    BadSpacing {
+        /// Where.
+        at: Point2,
+        /// The function's value.
+        value: f64,
+    },
 }
 
 /// Meshes a domain: graded triangulation by an advancing front (SPEC 7).
@@ -162,6 +183,7 @@ pub fn mesh_plc(
     observer: &mut dyn Observer,
 ) -> Result<Meshed, MeshError> {
     options.check()?;
+    options.table.as_deref().map_or(Ok(()), SpacingTable::check)?;
     let scale = Scale::of(&plc.points);
     scale.shrink(&mut plc);
 
@@ -173,22 +195,20 @@ pub fn mesh_plc(
     let splits = split_boundary(&plc, &mut background, options, &scale)?;
 
     observer.stage(Stage::Size);
-    let fields = Fields::new(&background, options, &scale);
-    let prediction = fields.predict(options.triangles_max);
-    admit(prediction, options, observer)?;
-
-    observer.stage(Stage::Front);
-    let mut laid = lay(&fields, options, prediction, &scale, observer)?;
-    let borders = border_half_edges(&laid.mesh, background.edges.len());
-    join_constraints(&mut laid.mesh, &background, &borders);
-
-    observer.stage(Stage::Improve);
-    let fixed = background.points.len();
-    let improved =
-        improve(&mut laid.mesh, &mut laid.points, fixed, scale.quantum(), options.improve);
-
-    observer.stage(Stage::Collect);
-    Ok(Meshed { splits, ..collect(laid, &background, improved, prediction, &scale) })
+    let control = Control { background: &background, options, scale: &scale };
+    let (fields, prediction) = control.fields()?;
+    if !observer.predicted(prediction) {
+        return Err(FrontError::Stopped.into());
+    }
+    let mut mesh = |fields: &Fields, prediction: Prediction| {
+        mesh_field(&background, fields, prediction, options, &scale, observer)
+    };
+    let meshed = mesh(&fields, prediction)?;
+    let meshed = match options.count {
+        Count::Target(target) => control.hit(target, meshed, mesh)?,
+        Count::Field | Count::Coarsen => meshed,
+    };
+    Ok(Meshed { splits, ..meshed })
 }
 
 /// Splits the boundary where that is asked for; returns the number of new points.
@@ -201,7 +221,7 @@ fn split_boundary(
     if !options.split_boundary {
         return Ok(0);
     }
-    let split_options = SplitOptions {
+    let split_options = subdivide::SplitOptions {
         growth: options.growth,
         points_max: options.triangles_max,
         quantum: scale.quantum(),
@@ -211,20 +231,34 @@ fn split_boundary(
     Ok(count)
 }
 
-/// Asks the limit and the observer whether to go on.
-fn admit(
+/// Front, improvement and plain arrays for one size field.
+fn mesh_field(
+    background: &Background,
+    fields: &Fields,
     prediction: Prediction,
     options: &Options,
+    scale: &Scale,
     observer: &mut dyn Observer,
-) -> Result<(), MeshError> {
-    if prediction.triangles > options.triangles_max as f64 {
-        return Err(MeshError::TooMany {
-            predicted: prediction.triangles,
-            stopped: prediction.stopped,
-            limit: options.triangles_max,
-        });
+) -> Result<Meshed, MeshError> {
+    observer.stage(Stage::Front);
+    let mut laid = lay(fields, options, prediction, scale, observer)?;
+    let borders = border_half_edges(&laid.mesh, background.edges.len());
+    join_constraints(&mut laid.mesh, background, &borders);
+
+    observer.stage(Stage::Improve);
+    let mut splits = 0;
+    if fields.has_coarse_boundary() && options.method != Method::DelaunayInitial {
+        splits = split_coarse(&mut laid, fields, prediction, scale)?;
     }
-    if observer.predicted(prediction) { Ok(()) } else { Err(FrontError::Stopped.into()) }
+    let fixed = background.points.len();
+    let FrontMesh { mesh, points, spacing, .. } = &mut laid;
+    let mut improve = improve(mesh, points, spacing, fixed, scale.quantum(), options.improve);
+    improve.splits = splits;
+
+    observer.stage(Stage::Collect);
+    let fit = fit::fit(fields, &laid, fixed);
+    let made = Made { prediction, improve, fit };
+    Ok(collect(laid, background, made, scale))
 }
 
 /// Lays the triangles: by the front, or none but the background's own.
@@ -247,7 +281,28 @@ fn lay(
         vertices_max: backstop(prediction),
         quantum: scale.quantum(),
     };
-    Ok(front::advance(start, fields.field(), front_options, &mut |n| observer.progress(n))?)
+    let mut progress = |n| fields.sound().is_ok() && observer.progress(n);
+    let laid = front::advance(start, fields.field(), front_options, &mut progress);
+    fields.sound()?;
+    Ok(laid?)
+}
+
+/// Splits what the front has left too large between boundaries coarser than the field.
+fn split_coarse(
+    laid: &mut FrontMesh,
+    fields: &Fields,
+    prediction: Prediction,
+    scale: &Scale,
+) -> Result<u64, MeshError> {
+    let hints = fields.hints_by_tag();
+    let FrontMesh { mesh, points, spacing, .. } = laid;
+    let new_max = backstop(prediction);
+    let points_max = fields.start_count() + new_max;
+    let options = SplitOptions { quantum: scale.quantum(), points_max };
+    let wanted = |tag: u32, p: Point2| fields.attainable(p, hints[&tag]);
+    let splits = split_long_edges(mesh, points, spacing, wanted, options);
+    fields.sound()?;
+    splits.ok_or_else(|| FrontError::Budget(new_max).into())
 }
 
 /// New vertices at which the front gives up: three times as many as predicted.
@@ -291,14 +346,15 @@ fn join_constraints(
     debug_assert!(waiting.is_empty(), "an interior constraint with one side");
 }
 
-/// Plain arrays in the user's coordinates, without points that no triangle uses.
-fn collect(
-    laid: FrontMesh,
-    background: &Background,
-    improve: ImproveStats,
+/// What is told of a mesh beside it.
+struct Made {
     prediction: Prediction,
-    scale: &Scale,
-) -> Meshed {
+    improve: ImproveStats,
+    fit: Option<Fit>,
+}
+
+/// Plain arrays in the user's coordinates, without points that no triangle uses.
+fn collect(laid: FrontMesh, background: &Background, made: Made, scale: &Scale) -> Meshed {
     let FrontMesh { points, mesh: topology, spacing, stats } = laid;
     let mut triangles: Vec<[u32; 3]> =
         topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
@@ -311,7 +367,9 @@ fn collect(
     let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
     let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
     let mesh = Mesh { points, triangles, edges, regions };
-    Meshed { mesh, spacing, prediction, front: stats, improve, refine: None, splits: 0 }
+    let Made { prediction, improve, fit } = made;
+    let (refine, splits) = (None, 0);
+    Meshed { mesh, spacing, prediction, front: stats, improve, refine, splits, fit }
 }
 
 fn region_markers(topology: &Triangulation, background: &Background) -> Vec<i32> {

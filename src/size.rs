@@ -3,17 +3,32 @@
 //! Definitions, and which inequality each field keeps, are in SPEC chapter 6. All fields rank
 //! candidates and choose positions; no decision about validity rests on them.
 
+mod boxes;
+mod coarse;
+mod composed;
+mod custom;
 mod direct;
+mod expression;
 mod growth;
+mod limit;
 mod nodal;
 mod predict;
+mod sources;
 mod spacing;
+mod table;
 
+pub use coarse::CoarseField;
+pub use composed::{Composed, RegionCaps};
+pub use custom::{BadSpacing, ExpressionField, Inputs};
 pub use direct::DirectField;
+pub use expression::{Expression, ExpressionError, Variable};
 pub use growth::{GrowthField, Source};
+pub use limit::growth_limit;
 pub use nodal::{NodalField, NodalRule};
 pub use predict::{Prediction, predict};
+pub use sources::{SizeSource, SourceField};
 pub use spacing::{Density, node_spacing};
+pub use table::{SpacingTable, TableError, TableField};
 
 use crate::point::Point2;
 use crate::triangulation::TriangleId;
@@ -43,6 +58,10 @@ pub enum SizeField {
     Direct(DirectField),
     /// Plain advancing front: this factor times the length of the base edge.
     BaseLength(f64),
+    /// The user's own gradation function.
+    Expression(Box<ExpressionField>),
+    /// The smallest of several.
+    Composed(Box<Composed>),
 }
 
 impl SizeField {
@@ -58,12 +77,28 @@ impl SizeField {
             Self::Nodal(field) => field.at(p, hint),
             Self::Direct(field) => field.at(p),
             Self::BaseLength(stretch) => stretch * base.length,
+            Self::Expression(field) => field.at(p, hint),
+            Self::Composed(field) => field.at(p, base, hint),
         }
     }
 
     /// Whether neighbouring values differ by a bounded slope, so that clearances may trust them.
     #[must_use]
     pub fn is_lipschitz(&self) -> bool {
-        matches!(self, Self::Uniform(_) | Self::Growth(_))
+        match self {
+            Self::Uniform(_) | Self::Growth(_) => true,
+            Self::Composed(field) => field.is_lipschitz(),
+            _ => false,
+        }
+    }
+
+    /// The first value of the user's function that was no spacing, if it has given one.
+    #[must_use]
+    pub fn fault(&self) -> Option<BadSpacing> {
+        match self {
+            Self::Expression(field) => field.fault(),
+            Self::Composed(field) => field.base.fault(),
+            _ => None,
+        }
     }
 }

@@ -324,7 +324,7 @@ fn the_same_input_gives_the_same_mesh_at_any_scale() {
                 *p = Point2::new(p.x * factor, p.y * factor);
             }
             let area = AreaMax::Constant(0.02 * factor * factor);
-            let other = mesh(&scaled, &Options { area_max: area, ..angle });
+            let other = mesh(&scaled, &Options { area_max: area, ..angle.clone() });
             assert_eq!(once.mesh.triangles, other.mesh.triangles, "{name} {exponent}");
             let back = |p: &Point2| Point2::new(p.x / factor, p.y / factor);
             let points: Vec<Point2> = other.mesh.points.iter().map(back).collect();
@@ -356,7 +356,7 @@ fn limits_and_senseless_bounds_are_errors() {
         options(AreaMax::Field, f64::NAN, false),
     ];
     for options in broken {
-        assert!(matches!(refuse(options), MeshError::Options(_)), "{options:?}");
+        assert!(matches!(refuse(options.clone()), MeshError::Options(_)), "{options:?}");
     }
 }
 

@@ -5,6 +5,7 @@ use super::decode::Decoder;
 use trigrade::check::{CheckOptions, check};
 use trigrade::domain::{Domain, Loop, LoopRole, Segment};
 use trigrade::front::{Order, Rules};
+use trigrade::improve::ImproveOptions;
 use trigrade::mesh::MeshData;
 use trigrade::mesher::{AreaMax, Gradation, MeshError, Method, Options, Unobserved, mesh_domain};
 use trigrade::point::Point2;
@@ -36,6 +37,9 @@ pub fn run(bytes: &[u8]) {
             | MeshError::Split(_)
             | MeshError::Options(_),
         ) => {}
+        Err(
+            error @ (MeshError::Gradation(_) | MeshError::Table(_) | MeshError::BadSpacing { .. }),
+        ) => panic!("nothing here is of the user's making: {error}\n{options:?}"),
     }
 }
 
@@ -52,7 +56,10 @@ fn options(decoder: &mut Decoder<'_>) -> Options {
         ][pick(6) as usize],
         density: [Density::BoundaryEdges, Density::AllEdges][pick(2) as usize],
         gradation: [Gradation::Growth, Gradation::Mean, Gradation::Third, Gradation::Uniform]
-            [pick(4) as usize],
+            [pick(4) as usize]
+            .clone(),
+        limit_growth: pick(4) == 0,
+        improve: ImproveOptions::level([1, 0, 2][pick(3) as usize]),
         order: [Order::Depth, Order::Shortest][pick(2) as usize],
         rules: [Rules::Scored, Rules::Hard][pick(2) as usize],
         growth: [0.25, 0.1, 1.0][pick(3) as usize],

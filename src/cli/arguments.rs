@@ -6,6 +6,8 @@ use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::delaunay::Engine;
 use crate::draw::View;
 use crate::improve::ImproveOptions;
+use crate::point::Point2;
+use crate::size::{Expression, SizeSource};
 use crate::{front, mesher, size};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -156,18 +158,35 @@ pub struct MeshOptions {
     /// Spacing at the boundary nodes.
     #[arg(long, value_enum, default_value_t = Density::BoundaryEdges)]
     pub density: Density,
-    /// How spacing spreads from the boundary into the domain.
-    #[arg(long, value_enum, default_value_t = Gradation::Growth)]
-    pub gradation: Gradation,
-    /// Largest slope of the spacing with `--gradation growth`.
+    /// How spacing spreads from the boundary into the domain: growth, mean, third, uniform, or an
+    /// expression such as `a*L1 + b*L2 + c*L3` of a, b, c, L1, L2, L3, x, y and H, the growth field
+    /// (with `--method direct` of D1, D2, L1, L2, x, y and H).
+    #[arg(long, value_name = "NAME|EXPR", default_value = "growth", value_parser = parse_gradation)]
+    #[arg(allow_hyphen_values = true)]
+    pub gradation: mesher::Gradation,
+    /// Largest slope of the spacing: of gradation growth, from sources, and with --limit-growth.
     #[arg(long, value_name = "SLOPE", default_value_t = 0.25, value_parser = parse_positive)]
     pub growth: f64,
+    /// Limit the slope of any gradation, from the boundary's own spacing on.
+    #[arg(long)]
+    pub limit_growth: bool,
     /// Keep the spacing within [b/K, K b] of the base edge's length b.
     #[arg(long, value_name = "K", default_value_t = 1.5, value_parser = parse_clamp)]
     pub clamp: f64,
-    /// Spacing for `--gradation uniform`; without it the mean boundary edge.
+    /// Largest spacing anywhere; for `--gradation uniform` the spacing, else the mean boundary edge.
     #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
     pub spacing: Option<f64>,
+    /// Spacing at the edges with a marker, growing from there; repeatable.
+    #[arg(long, value_name = "MARKER=LENGTH", value_parser = parse_spacing_at)]
+    #[arg(allow_hyphen_values = true)]
+    pub spacing_at: Vec<(i32, f64)>,
+    /// Spacing H at a point, within R of it, or along a line, growing from there; repeatable.
+    #[arg(long, value_name = "X,Y,H[,R]|X1,Y1,X2,Y2,H", value_parser = parse_source)]
+    #[arg(allow_hyphen_values = true)]
+    pub source: Vec<SizeSource>,
+    /// A background mesh with a spacing at each node: .msh with $NodeData, .pos, or .vtu.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub size_field: Option<PathBuf>,
     /// Which front edge goes first.
     #[arg(long, value_enum, default_value_t = Order::Depth)]
     pub order: Order,
@@ -189,8 +208,19 @@ pub struct MeshOptions {
     /// with the other methods where the spacing jumps or a gap is narrow.
     #[arg(long)]
     pub split_boundary: bool,
-    /// Leave out the smoothing after the front.
-    #[arg(long)]
+    /// Take a coarser field where the field asks for more than --max-triangles.
+    #[arg(long, conflicts_with = "target")]
+    pub coarsen: bool,
+    /// Make about this many triangles: the field becomes coarser or finer until they come out.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    pub target: Option<u32>,
+    /// Effort after the front: 0 smooths, 1 also repairs the worst places, 2 all defects of the
+    /// lattice it can, 3 until nothing gets better; each some ten times as long as the one before.
+    #[arg(long, value_name = "LEVEL", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u8).range(0..=3))]
+    pub optimize: u8,
+    /// Leave out all improvement after the front.
+    #[arg(long, conflicts_with = "optimize")]
     pub no_improve: bool,
 }
 
@@ -211,15 +241,18 @@ impl MeshOptions {
                 Density::AllEdges => size::Density::AllEdges,
                 Density::BoundaryEdges => size::Density::BoundaryEdges,
             },
-            gradation: match self.gradation {
-                Gradation::Growth => mesher::Gradation::Growth,
-                Gradation::Mean => mesher::Gradation::Mean,
-                Gradation::Third => mesher::Gradation::Third,
-                Gradation::Uniform => mesher::Gradation::Uniform,
-            },
+            gradation: self.gradation.clone(),
             growth: self.growth,
             clamp: self.clamp,
+            limit_growth: self.limit_growth,
             spacing: self.spacing,
+            spacing_at: self.spacing_at.clone(),
+            sources: self.source.clone(),
+            count: match self.target {
+                Some(target) => mesher::Count::Target(target as usize),
+                None if self.coarsen => mesher::Count::Coarsen,
+                None => mesher::Count::Field,
+            },
             order: match self.order {
                 Order::Depth => front::Order::Depth,
                 Order::Shortest => front::Order::Shortest,
@@ -229,7 +262,10 @@ impl MeshOptions {
                 Rules::Hard => front::Rules::Hard,
             },
             triangles_max: self.max_triangles as usize,
-            improve: if self.no_improve { ImproveOptions { sweeps: 0 } } else { defaults.improve },
+            improve: match self.no_improve {
+                true => ImproveOptions::NONE,
+                false => ImproveOptions::level(self.optimize),
+            },
             area_max: self.max_area.unwrap_or(match self.min_angle {
                 Some(_) => mesher::AreaMax::Unbounded,
                 None => mesher::AreaMax::Field,
@@ -274,19 +310,6 @@ pub enum Density {
     AllEdges,
     /// Mean length of the boundary edges at the node.
     BoundaryEdges,
-}
-
-/// `--gradation`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Gradation {
-    /// Smallest of `h_i` + growth * distance over the boundary nodes i.
-    Growth,
-    /// a L1 + b L2 + c L3 in the background triangle.
-    Mean,
-    /// The same divided by three.
-    Third,
-    /// One spacing everywhere.
-    Uniform,
 }
 
 /// `--order`
@@ -473,6 +496,9 @@ pub struct CheckArguments {
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,
+    /// Measure edge lengths against a size field: .msh with $NodeData, .pos, or .vtu.
+    #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+    pub size: Option<PathBuf>,
     /// Write the quality of this mesh, for a later --baseline.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub save_baseline: Option<PathBuf>,
@@ -774,6 +800,41 @@ fn parse_clamp(text: &str) -> Result<f64, String> {
     if value >= 1.0 { Ok(value) } else { Err("the factor must be at least 1".into()) }
 }
 
+fn parse_gradation(text: &str) -> Result<mesher::Gradation, String> {
+    Ok(match text.trim() {
+        "growth" => mesher::Gradation::Growth,
+        "mean" => mesher::Gradation::Mean,
+        "third" => mesher::Gradation::Third,
+        "uniform" => mesher::Gradation::Uniform,
+        _ => {
+            let expression = Expression::parse(text).map_err(|error| error.to_string())?;
+            mesher::Gradation::Expression(expression)
+        }
+    })
+}
+
+fn parse_spacing_at(text: &str) -> Result<(i32, f64), String> {
+    let (marker, length) = text.split_once('=').ok_or("write it as MARKER=LENGTH, e.g. 2=0.01")?;
+    let marker =
+        marker.trim().parse().map_err(|_| format!("`{marker}` is no marker: a whole number"))?;
+    Ok((marker, parse_positive(length)?))
+}
+
+fn parse_source(text: &str) -> Result<SizeSource, String> {
+    let numbers: Vec<f64> = text.split(',').map(parse_finite).collect::<Result<_, _>>()?;
+    let source = match numbers[..] {
+        [x, y, h] => SizeSource::point(Point2::new(x, y), h, 0.0),
+        [x, y, h, radius] => SizeSource::point(Point2::new(x, y), h, radius),
+        [x1, y1, x2, y2, h] => SizeSource::line([Point2::new(x1, y1), Point2::new(x2, y2)], h),
+        _ => return Err("write it as X,Y,H or X,Y,H,RADIUS, or as X1,Y1,X2,Y2,H".into()),
+    };
+    if source.is_sound() {
+        Ok(source)
+    } else {
+        Err("the spacing must be above 0 and the radius not below 0".into())
+    }
+}
+
 fn parse_farfield(text: &str) -> Result<Farfield, String> {
     let (radius, points) = text.split_once(',').ok_or("write it as RADIUS,POINTS, e.g. 15,60")?;
     let radius = parse_positive(radius)?;
@@ -883,6 +944,32 @@ mod tests {
         assert_eq!(parse_duration("1.5"), Ok(Duration::from_millis(1500)));
         for wrong in ["0", "-1", "1e300", "soon"] {
             assert!(parse_duration(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    // spec: K10
+    #[test]
+    fn gradations_are_names_or_expressions() {
+        assert_eq!(parse_gradation("mean"), Ok(mesher::Gradation::Mean));
+        assert!(matches!(parse_gradation("0.1 + 0.2*x"), Ok(mesher::Gradation::Expression(_))));
+        let error = parse_gradation("0.1 + wide").expect_err("no such variable");
+        assert!(error.starts_with("column 7:"), "{error}");
+    }
+
+    // spec: K10
+    #[test]
+    fn sources_are_points_discs_and_lines() {
+        let p = Point2::new;
+        assert_eq!(parse_source("1,-2,0.5"), Ok(SizeSource::point(p(1.0, -2.0), 0.5, 0.0)));
+        assert_eq!(parse_source("1,2,0.5,3"), Ok(SizeSource::point(p(1.0, 2.0), 0.5, 3.0)));
+        let line = SizeSource::line([p(0.0, 0.0), p(1.0, 1.0)], 0.1);
+        assert_eq!(parse_source("0,0,1,1,0.1"), Ok(line));
+        for wrong in ["", "1,2", "1,2,0", "1,2,0.5,-1", "1,2,3,4,5,6", "1,2,nan", "a,b,c"] {
+            assert!(parse_source(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_spacing_at("-3=0.5"), Ok((-3, 0.5)));
+        for wrong in ["", "3", "3=0", "x=1", "3=", "=1", "1.5=2"] {
+            assert!(parse_spacing_at(wrong).is_err(), "{wrong}");
         }
     }
 

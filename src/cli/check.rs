@@ -6,12 +6,15 @@ use super::domain_file::load_domain;
 use super::failure::{Diagnostic, EXIT_FINDINGS, Failure};
 use super::forms::{OutputFile, output_files};
 use super::input::{Input, load};
+use super::mesh::count;
 use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
+use super::size_file::load_node_data;
 use super::verdict;
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
+use crate::check::size::{SizeFit, size_fit};
 use crate::check::{Baseline, CheckOptions, GateError, GateFile, Report, check};
 use crate::domain::Domain;
 use crate::draw;
@@ -39,6 +42,7 @@ pub fn run(
     let mut watch = Watch::new(console);
     watch.begin("read");
     let files = Files::load(arguments)?;
+    let field = arguments.size.as_deref().map(load_node_data).transpose()?;
     watch.begin("check");
     let (mesh, name) = (&files.loaded.mesh, &files.loaded.name);
     let report = check(mesh, files.domain(), &options);
@@ -53,6 +57,9 @@ pub fn run(
         json: verdict::json(&report),
         checked: Some(Box::new(files.checked(report))),
     };
+    if let Some(field) = &field {
+        tell_size(size_fit(mesh, field), &mut outcome);
+    }
     if arguments.timings {
         let laps: Vec<String> =
             laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
@@ -62,6 +69,23 @@ pub fn run(
         confirm(&certified, &fresh, &mut outcome);
     }
     Ok(outcome)
+}
+
+/// Adds how well the edges fit a size field.
+fn tell_size(fit: Option<SizeFit>, outcome: &mut Outcome) {
+    let line = match &fit {
+        Some(SizeFit { percentile_1: low, median, percentile_99: high, edges, outside }) => {
+            format!(
+                "edge length / spacing {low:.2} (1 %), {median:.2} (50 %), {high:.2} (99 %) over {} \
+                 edges, {} outside of the field",
+                count(*edges),
+                count(*outside)
+            )
+        }
+        None => "the field covers no edge inside the mesh".to_owned(),
+    };
+    outcome.text.push_str(&format!("\n  size       {line}"));
+    outcome.json["edge_length_over_spacing"] = serde_json::json!(fit);
 }
 
 /// Says whether the certificate holds; one that does not is a finding.

@@ -38,19 +38,19 @@ struct Case {
 }
 
 fn cases() -> [Case; 3] {
-    let defaults = Options::default();
-    let literal = Options { gradation: Gradation::Mean, density: Density::AllEdges, ..defaults };
+    let literal =
+        Options { gradation: Gradation::Mean, density: Density::AllEdges, ..Options::default() };
     [
         Case {
             name: "graded",
             title: "graded, growth-limited spacing (default)",
-            options: defaults,
+            options: Options::default(),
         },
         Case { name: "literal", title: "graded, mean of all background edges", options: literal },
         Case {
             name: "afm",
             title: "plain advancing front",
-            options: Options { method: Method::Afm, ..defaults },
+            options: Options { method: Method::Afm, ..Options::default() },
         },
     ]
 }

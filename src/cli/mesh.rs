@@ -12,6 +12,7 @@ use super::mesh_file::{self, Drawing, malformed, parse};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::refinement::Refinement;
+use super::size_file::load_size_field;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
@@ -20,10 +21,11 @@ use crate::domain::Domain;
 use crate::domain::validate::{Plc, validate};
 use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
 use crate::mesh::MeshData;
-use crate::mesher::{MeshError, Meshed, Observer, Options, mesh_plc};
+use crate::mesher::{Count, Fit, MeshError, Meshed, Observer, Options, mesh_plc};
 use crate::size::Prediction;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Runs the verb.
@@ -43,7 +45,10 @@ pub fn run(
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
-    let options = arguments.options.options();
+    let mut options = arguments.options.options();
+    if let Some(path) = &arguments.options.size_field {
+        options.table = Some(Arc::new(load_size_field(path)?));
+    }
     // Staged before the long work: a target that cannot be written is known now.
     let mut targets = paths(&files);
     targets.extend(arguments.certificate.clone());
@@ -58,6 +63,9 @@ pub fn run(
     let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
     summary.note(&meshed, &options);
+    if let Count::Target(target) = options.count {
+        summary.target = Some(target);
+    }
     write_all(&mut outputs, &files, &meshed)?;
     if !arguments.no_check {
         watch.begin("read back");
@@ -112,12 +120,16 @@ pub fn no_mesh(error: &MeshError) -> Failure {
         MeshError::Invalid(_) | MeshError::Background(_) => Failure::findings(vec![diagnostic]),
         MeshError::TooMany { .. } => Failure::cannot_run(
             diagnostic
-                .help("`--dry-run` prints the prediction; a larger --max-triangles allows it"),
+                .help("`--dry-run` prints the prediction; a larger --max-triangles allows it")
+                .help("--coarsen takes the field that fits, --target COUNT any other"),
         ),
         MeshError::Front(_)
         | MeshError::Refine(_)
         | MeshError::Split(_)
-        | MeshError::Options(_) => Failure::cannot_run(diagnostic),
+        | MeshError::Options(_)
+        | MeshError::Gradation(_)
+        | MeshError::Table(_)
+        | MeshError::BadSpacing { .. } => Failure::cannot_run(diagnostic),
     }
 }
 
@@ -223,6 +235,9 @@ fn certify(
     Ok(Certificate::new(report, &CheckOptions::default(), mesh, Some(domain)))
 }
 
+/// A mesh this near to its target has reached it.
+const TARGET_TOLERANCE: f64 = 0.05;
+
 /// What is told of a run.
 struct Summary {
     name: String,
@@ -231,6 +246,8 @@ struct Summary {
     mesh: Option<(usize, usize)>,
     refinement: Option<Refinement>,
     splits: usize,
+    fit: Option<Fit>,
+    target: Option<usize>,
     check: Option<(String, Report)>,
     written: Vec<PathBuf>,
     far_field: Option<Farfield>,
@@ -245,6 +262,8 @@ impl Summary {
             mesh: None,
             refinement: None,
             splits: 0,
+            fit: None,
+            target: None,
             check: None,
             written: Vec::new(),
             far_field,
@@ -256,6 +275,19 @@ impl Summary {
         self.refinement = meshed.refine.map(|stats| Refinement::new(stats, options));
         self.splits = meshed.splits;
         self.mesh = Some((meshed.mesh.points.len(), meshed.mesh.triangles.len()));
+        self.fit = meshed.fit;
+    }
+
+    /// What to say when the target was not reached: the boundary alone may ask for more or less.
+    fn missed_target(&self) -> Option<String> {
+        let (target, (_, triangles)) = (self.target?, self.mesh?);
+        let ratio = triangles as f64 / target as f64;
+        ((ratio - 1.0).abs() > TARGET_TOLERANCE).then(|| {
+            format!(
+                "the target of {} triangles is out of reach with this boundary",
+                count(target as u64)
+            )
+        })
     }
 
     fn exit(&self) -> u8 {
@@ -286,6 +318,18 @@ impl Summary {
         }
         for shortfall in self.refinement.iter().flat_map(Refinement::sentences) {
             line("refined", shortfall);
+        }
+        if let Some(fit) = self.fit {
+            let [low, median, high] = [fit.low, fit.median, fit.high];
+            line(
+                "size",
+                format!(
+                    "edge length / spacing {low:.2} (1 %), {median:.2} (50 %), {high:.2} (99 %)"
+                ),
+            );
+        }
+        if let Some(text) = self.missed_target() {
+            line("target", text);
         }
         match &self.check {
             Some((name, report)) => {
@@ -346,6 +390,12 @@ impl Summary {
             "triangles": self.mesh.map(|(_, triangles)| triangles),
             "boundary_points_added": self.splits,
             "refinement": self.refinement.as_ref().map(Refinement::json),
+            "edge_length_over_spacing": self.fit.map(|fit| json!({
+                "percentile_1": fit.low,
+                "median": fit.median,
+                "percentile_99": fit.high,
+                "edges": fit.edges,
+            })),
             "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
             "written": written,
             "seconds": times,

@@ -1,6 +1,7 @@
 //! Watching the mesher: a progress bar on a terminal, and the time of each stage.
 
 use super::console::Console;
+use super::mesh::count;
 use crate::mesher::{Observer, Stage};
 use crate::size::Prediction;
 use indicatif::ProgressBar;
@@ -50,7 +51,9 @@ impl Observer for Watch {
     }
 
     fn predicted(&mut self, prediction: Prediction) -> bool {
-        self.bar.set_length(prediction.triangles as u64);
+        let predicted = prediction.triangles as u64;
+        self.bar.set_length(predicted);
+        self.bar.println(format!("predicted {} triangles", count(predicted)));
         true
     }
 

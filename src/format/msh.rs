@@ -222,6 +222,11 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
     mesh.finish(&scanner)
 }
 
+/// How numbers stand in an MSH file.
+pub(crate) fn codec(bytes: &[u8]) -> Result<Codec, ReadError> {
+    read_header(&mut Scanner::new(bytes)).map(|(_, codec)| codec)
+}
+
 /// Skips a section that holds no mesh, whatever bytes it has.
 fn skip_section(scanner: &mut Scanner, name: &[u8]) -> Result<(), ReadError> {
     let end = [b"$End", &name[1..]].concat();

@@ -14,4 +14,5 @@ mod tests;
 mod write;
 
 pub use read::read;
+pub(crate) use read::read_point_data;
 pub(crate) use write::write;

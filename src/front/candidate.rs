@@ -23,6 +23,9 @@ pub(super) struct Trial {
     pub(super) point: Point2,
     /// Spacing at the point: its clearances are measured in it.
     pub(super) spacing: f64,
+    /// The scale of its surroundings: the spacing, but not less than what a side on a base edge much
+    /// longer than that can shrink to.
+    pub(super) reach: f64,
     /// Way from the boundary.
     pub(super) depth: f64,
     score: f64,
@@ -31,7 +34,7 @@ pub(super) struct Trial {
 impl Trial {
     /// A point on the boundary's own behalf, whatever its score.
     pub(super) fn given(point: Point2, spacing: f64) -> Self {
-        Self { point, spacing, depth: 0.0, score: 1.0 }
+        Self { point, spacing, reach: spacing, depth: 0.0, score: 1.0 }
     }
 }
 
@@ -132,6 +135,10 @@ const SCORED_STEPS: usize = 2;
 /// Evaluations for the report's fixed point, and its tolerance.
 const HARD_STEPS: usize = 20;
 const FIXED_POINT_TOLERANCE: f64 = 1e-3;
+/// A base edge this much longer than its spacing is coarse: the boundary forces it.
+const COARSE_BASE: f64 = 1.3;
+/// Beside a coarse base edge a point keeps its clearances from this fraction of the edge.
+const COARSE_REACH: f64 = 0.45;
 /// A corner up to 150 degrees is closed by the triangle next to the trial one.
 const COS_WEDGE: f64 = -0.866_025_403_784_438_6;
 /// A bisector point is tried between 80 and 145 degrees.
@@ -217,7 +224,9 @@ impl Placer<'_> {
 
     fn trial(&self, point: Point2, spacing: f64) -> Trial {
         let height = cross(self.n.a, self.n.b, point) / self.base;
-        Trial { point, spacing, depth: self.n.depth + height, score: self.score(point, spacing) }
+        let reach = spacing.max(COARSE_REACH * self.base);
+        let depth = self.n.depth + height;
+        Trial { point, spacing, reach, depth, score: self.score(point, spacing) }
     }
 
     /// The wanted length between vertices of these spacings, in reach of the base edge.
@@ -279,14 +288,19 @@ impl Placer<'_> {
 
     /// How well the two sides at `p` fit the wanted lengths: 1 when they do, towards 0. The eighth
     /// root makes it a tie-break beside the shape: without it uniform meshes drift, with its square
-    /// root graded ones get too many vertices of degree 5 and 7 (measured on three domains).
+    /// root graded ones get too many vertices of degree 5 and 7 (measured on three domains). On a
+    /// coarse base edge the way to the wanted length matters as much as the shape: with a root there,
+    /// the front closes triangles as coarse as the boundary.
     fn fit(&self, p: Point2, spacing: f64) -> f64 {
         let n = self.n;
+        let coarse = self.base > COARSE_BASE * self.n.mean_spacing();
         let side = |end: Point2, h: f64| {
-            let ratio = end.distance(p) / (0.5 * (h + spacing));
+            let wanted = if coarse { self.length(h, spacing) } else { 0.5 * (h + spacing) };
+            let ratio = end.distance(p) / wanted;
             ratio.min(1.0 / ratio)
         };
-        (side(n.a, n.spacing[0]) * side(n.b, n.spacing[1])).sqrt().sqrt().sqrt()
+        let both = side(n.a, n.spacing[0]) * side(n.b, n.spacing[1]);
+        if coarse { both } else { both.sqrt().sqrt().sqrt() }
     }
 }
 

@@ -66,7 +66,7 @@ impl Cavity {
         trial: &Trial,
     ) -> bool {
         let p = trial.point;
-        let reach_sq = (REACH * trial.spacing).powi(2);
+        let reach_sq = (REACH * trial.reach).powi(2);
         self.begin();
         if !self.absorb(open, vertices, base.triangle(), p) {
             return false;
@@ -144,9 +144,9 @@ impl Cavity {
     /// sees is its neighbour in the Delaunay triangulation, so it is on the outline. Float
     /// arithmetic: this ranks, `carve` has decided.
     pub(super) fn is_clear(&self, vertices: &Vertices, trial: &Trial) -> bool {
-        let vertex_sq = (CLEARANCE_VERTEX * trial.spacing).powi(2);
+        let vertex_sq = (CLEARANCE_VERTEX * trial.reach).powi(2);
         let edge_sq = |a: Point2, b: Point2| {
-            let h_sq = trial.spacing.powi(2);
+            let h_sq = trial.reach.powi(2);
             let [low, high] = CLEARANCE_EDGE.map(|fraction| fraction * fraction * h_sq);
             (CLEARANCE_LENGTH_SQ * a.distance_sq(b)).clamp(low, high)
         };

@@ -86,6 +86,16 @@ impl<'a> Smoother<'a> {
         })
     }
 
+    /// Sum of squared inverse mean ratios above 1.
+    pub(super) fn excess(&self) -> f64 {
+        let excess = |t: TriangleId| {
+            let [a, b, c] = self.mesh.corners(t).map(|v| self.points[v.index()]);
+            let f = inverse_mean_ratio(a, b, c);
+            f * f - 1.0
+        };
+        self.mesh.triangles().map(excess).sum()
+    }
+
     fn suspect_star(&mut self, start: HalfEdgeId) {
         let mut e = start;
         loop {
@@ -128,6 +138,14 @@ fn outgoing(mesh: &Triangulation, vertices: usize) -> Vec<Option<HalfEdgeId>> {
         }
     }
     outgoing
+}
+
+/// The inverse mean ratio of a triangle, at least 1; infinite for one that is not counterclockwise.
+pub(super) fn inverse_mean_ratio(a: Point2, b: Point2, c: Point2) -> f64 {
+    const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
+    let double_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    let squares = a.distance_sq(b) + b.distance_sq(c) + c.distance_sq(a);
+    if double_area > 0.0 { squares / (TWO_SQRT_3 * double_area) } else { f64::INFINITY }
 }
 
 /// Energy, its gradient and Hessian, and the worst inverse mean ratio (unscaled) of a star.

@@ -1,11 +1,12 @@
 //! The method delaunay: refinement in place of the front and of improvement.
 
+use super::control::Control;
 use super::field::Fields;
-use super::options::{AreaMax, Options};
+use super::options::{AreaMax, Count, Options};
 use super::scale::Scale;
-use super::{MeshError, Meshed, Observer, Renumber, Stage, admit, region_markers};
+use super::{MeshError, Meshed, Observer, Renumber, Stage, region_markers};
 use crate::background::Background;
-use crate::front::FrontStats;
+use crate::front::{FrontError, FrontStats};
 use crate::improve::ImproveStats;
 use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
@@ -13,8 +14,9 @@ use crate::refine::{AreaBound, RefineOptions, Refined, refine};
 use crate::size::Prediction;
 
 /// Triangles per unit of (area over bound): the mean triangle has about 0.65 of the largest area.
-const TRIANGLES_PER_BOUND: f64 = 1.55;
+pub(super) const TRIANGLES_PER_BOUND: f64 = 1.55;
 
+/// Refines with the areas of the field, at the count that is wanted, or with a constant bound.
 pub(super) fn mesh(
     background: &Background,
     options: &Options,
@@ -22,41 +24,68 @@ pub(super) fn mesh(
     observer: &mut dyn Observer,
 ) -> Result<Meshed, MeshError> {
     observer.stage(Stage::Size);
-    let by_field = options.area_max == AreaMax::Field;
-    let fields = by_field.then(|| Fields::new(background, options, scale));
-    let area = match (options.area_max, &fields) {
-        (AreaMax::Field, Some(fields)) => AreaBound::Field(fields.field()),
-        (AreaMax::Constant(area), _) => AreaBound::Constant(scale.shrink_area(area)),
-        _ => AreaBound::None,
+    let run = Run { background, options, scale };
+    if options.area_max == AreaMax::Field {
+        let control = Control { background, options, scale };
+        let (fields, prediction) = control.fields()?;
+        announce(prediction, observer)?;
+        let mut mesh = |fields: &Fields, prediction: Prediction| {
+            run.refined(AreaBound::Field(fields.field()), prediction, observer)
+        };
+        let meshed = mesh(&fields, prediction)?;
+        return match options.count {
+            Count::Target(target) => control.hit(target, meshed, mesh),
+            Count::Field | Count::Coarsen => Ok(meshed),
+        };
+    }
+    let area = match options.area_max {
+        AreaMax::Constant(area) => AreaBound::Constant(scale.shrink_area(area)),
+        AreaMax::Field | AreaMax::Unbounded => AreaBound::None,
     };
-    let prediction = predict(background, fields.as_ref(), area, options.triangles_max);
-    admit(prediction, options, observer)?;
+    let prediction = predict(background, area);
+    if prediction.triangles > options.triangles_max as f64 {
+        let Prediction { triangles: predicted, stopped } = prediction;
+        return Err(MeshError::TooMany { predicted, stopped, limit: options.triangles_max });
+    }
+    announce(prediction, observer)?;
+    run.refined(area, prediction, observer)
+}
 
-    observer.stage(Stage::Refine);
-    let refine_options = RefineOptions {
-        area,
-        angle_min_deg: options.angle_min_deg,
-        split_boundary: options.split_boundary,
-        triangles_max: options.triangles_max,
-        quantum: scale.quantum(),
-    };
-    let refined = refine(background, &refine_options, &mut |n| observer.progress(n))?;
+/// Asks the observer whether to go on.
+fn announce(prediction: Prediction, observer: &mut dyn Observer) -> Result<(), MeshError> {
+    if observer.predicted(prediction) { Ok(()) } else { Err(FrontError::Stopped.into()) }
+}
 
-    observer.stage(Stage::Collect);
-    Ok(collect(refined, background, prediction, scale))
+/// What every refinement of a domain shares.
+struct Run<'a> {
+    background: &'a Background,
+    options: &'a Options,
+    scale: &'a Scale,
+}
+
+impl Run<'_> {
+    fn refined(
+        &self,
+        area: AreaBound<'_>,
+        prediction: Prediction,
+        observer: &mut dyn Observer,
+    ) -> Result<Meshed, MeshError> {
+        observer.stage(Stage::Refine);
+        let refine_options = RefineOptions {
+            area,
+            angle_min_deg: self.options.angle_min_deg,
+            split_boundary: self.options.split_boundary,
+            triangles_max: self.options.triangles_max,
+            quantum: self.scale.quantum(),
+        };
+        let refined = refine(self.background, &refine_options, &mut |n| observer.progress(n))?;
+        observer.stage(Stage::Collect);
+        Ok(collect(refined, self.background, prediction, self.scale))
+    }
 }
 
 /// From the bounds on areas; a bound on angles alone predicts nothing but the initial triangles.
-fn predict(
-    background: &Background,
-    fields: Option<&Fields>,
-    area: AreaBound<'_>,
-    limit: usize,
-) -> Prediction {
-    if let Some(fields) = fields {
-        let Prediction { triangles, stopped } = fields.predict(limit);
-        return Prediction { triangles: TRIANGLES_PER_BOUND * triangles, stopped };
-    }
+fn predict(background: &Background, area: AreaBound<'_>) -> Prediction {
     let constant = if let AreaBound::Constant(area) = area { area } else { f64::INFINITY };
     let mut triangles = 0.0;
     let mesh = &background.triangulation;
@@ -112,5 +141,6 @@ fn collect(
         improve: ImproveStats::default(),
         refine: Some(stats),
         splits,
+        fit: None,
     }
 }

@@ -42,7 +42,7 @@ impl Scale {
         }
     }
 
-    fn shrunk(&self, p: Point2) -> Point2 {
+    pub(super) fn shrunk(&self, p: Point2) -> Point2 {
         Point2::new(libm::scalbn(p.x, -self.exponent), libm::scalbn(p.y, -self.exponent))
     }
 

@@ -43,20 +43,25 @@ impl DirectField {
     /// The spacing at `p`: positive and finite.
     #[must_use]
     pub fn at(&self, p: Point2) -> f64 {
+        match self.edges_at(p) {
+            ((d1, l1), Some((d2, l2))) if d1 + d2 > 0.0 => (d1 * l2 + d2 * l1) / (d1 + d2),
+            ((_, l1), _) => l1,
+        }
+    }
+
+    /// Distance and length of the nearest edge, and of the edge opposite, if the normal hits one.
+    #[must_use]
+    pub fn edges_at(&self, p: Point2) -> ((f64, f64), Option<(f64, f64)>) {
         let (nearest, foot, d1) = self.nearest(p);
-        let l1 = length(self.edges[nearest]);
         let [a, b] = self.edges[nearest];
         let away = if d1 > 0.0 {
             Point2::new(p.x - foot.x, p.y - foot.y)
         } else {
             Point2::new(a.y - b.y, b.x - a.x)
         };
-        match self.hit(p, away, nearest) {
-            Some((opposite, d2)) if d1 + d2 > 0.0 => {
-                (d1 * length(self.edges[opposite]) + d2 * l1) / (d1 + d2)
-            }
-            _ => l1,
-        }
+        let opposite = self.hit(p, away, nearest);
+        let opposite = opposite.map(|(edge, d2)| (d2, length(self.edges[edge])));
+        ((d1, length(self.edges[nearest])), opposite)
     }
 
     fn build(&mut self, start: usize, end: usize) {

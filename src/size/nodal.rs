@@ -3,7 +3,7 @@
 
 use crate::point::Point2;
 use crate::size::Hint;
-use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation};
+use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// How the three node spacings of a background triangle make a spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +52,22 @@ impl NodalField {
             NodalRule::Mean => mean,
             NodalRule::Third => mean / 3.0,
         }
+    }
+
+    /// Barycentric coordinates of `p`, found as by [`at`](Self::at), and the spacings at the three
+    /// corners: first the lexicographically smallest corner, then counterclockwise, so that the
+    /// order does not depend on how the domain was written down.
+    #[must_use]
+    pub fn corners_at(&self, p: Point2, hint: &mut Hint) -> ([f64; 3], [f64; 3]) {
+        let (t, weights) = self.walk(p, hint.0);
+        *hint = Hint(t);
+        let corners = self.background.corners(t).map(VertexId::index);
+        let at = |i: usize| self.points[corners[i]];
+        let first = [1, 2]
+            .into_iter()
+            .fold(0, |f, i| if at(i).lexicographic(at(f)).is_lt() { i } else { f });
+        let order = [first, (first + 1) % 3, (first + 2) % 3];
+        (order.map(|i| weights[i]), order.map(|i| self.spacing[corners[i]]))
     }
 
     /// The triangle of `p`, or the last one before the border, with non-negative weights.
@@ -117,7 +133,6 @@ fn clamped(weights: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangulation::VertexId;
 
     /// The unit square cut along its diagonal from (0, 0) to (1, 1).
     fn square(rule: NodalRule) -> NodalField {

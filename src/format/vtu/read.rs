@@ -37,6 +37,28 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
     Ok(data)
 }
 
+/// Reads a VTU file and its first array of floats of one component at the points.
+///
+/// # Errors
+/// As [`read`], and where a piece has no such array.
+pub(crate) fn read_point_data(bytes: &[u8]) -> Result<(MeshData, Vec<f64>), ReadError> {
+    let options = ReadOptions { split_quads: true, ..ReadOptions::default() };
+    let mesh = read(bytes, &options)?;
+    let outline = Outline::read(bytes)?;
+    let left = expansion_limit(bytes.len());
+    let mut decoder = Decoder { bytes, coding: outline.coding, left, digits: None };
+    let mut values = Vec::new();
+    for piece in outline.pieces.iter().filter(|piece| piece.points > 0) {
+        let Some(array) = piece.point_array else {
+            let expected = "an array of floats of one component in `PointData`".to_owned();
+            let fault = ReadFault::Malformed { expected, found: String::new() };
+            return Err(ReadError { file: "", at: place(bytes, piece.offset), fault });
+        };
+        values.extend(decoder.floats(array, "values at points", piece.points)?);
+    }
+    Ok((mesh, values))
+}
+
 fn read_piece(
     decoder: &mut Decoder,
     piece: &Piece,
@@ -94,6 +116,8 @@ struct Piece {
     points: u64,
     cells: u64,
     coordinates: Option<Array>,
+    /// The first array of floats of one component in `PointData`.
+    point_array: Option<Array>,
     /// The arrays of `Cells` and `CellData` by name.
     arrays: Vec<(Vec<u8>, Array)>,
 }
@@ -118,6 +142,7 @@ impl Piece {
 enum Section {
     Points,
     Cells,
+    PointData,
     Other,
 }
 
@@ -208,7 +233,8 @@ impl<'a> OutlineReader<'a> {
             b"Piece" => self.piece(element)?,
             b"Points" => self.section = Section::Points,
             b"Cells" | b"CellData" => self.section = Section::Cells,
-            b"PointData" | b"FieldData" => self.section = Section::Other,
+            b"PointData" => self.section = Section::PointData,
+            b"FieldData" => self.section = Section::Other,
             b"DataArray" => self.data_array(element, is_empty)?,
             b"AppendedData" => return self.appended_data(element),
             _ => {}
@@ -264,6 +290,7 @@ impl<'a> OutlineReader<'a> {
             points: self.count(element, "NumberOfPoints")?,
             cells: self.count(element, "NumberOfCells")?,
             coordinates: None,
+            point_array: None,
             arrays: Vec::new(),
         });
         Ok(())
@@ -280,7 +307,11 @@ impl<'a> OutlineReader<'a> {
             let content = &self.bytes[start..span.end as usize];
             end = start + memchr(b'<', content).unwrap_or(content.len());
         }
-        if self.section == Section::Other {
+        let is_vector = !matches!(
+            self.attribute(element, "NumberOfComponents")?.as_deref(),
+            None | Some(b"1" | b"0" | b"")
+        );
+        if self.section == Section::Other || self.section == Section::PointData && is_vector {
             return Ok(());
         }
         let source = match self.attribute(element, "format")?.as_deref() {
@@ -309,6 +340,10 @@ impl<'a> OutlineReader<'a> {
         let array = Array { scalar, source };
         match section {
             Section::Points => piece.coordinates = Some(array),
+            Section::PointData if scalar.is_integer() => {}
+            Section::PointData => {
+                piece.point_array.get_or_insert(array);
+            }
             _ => piece.arrays.push((name, array)),
         }
         Ok(())
@@ -343,7 +378,7 @@ impl<'a> OutlineReader<'a> {
         let data_end = appended.and_then(|_| memmem::rfind(bytes, b"</AppendedData>"));
         for piece in &mut self.pieces {
             let arrays = piece.arrays.iter_mut().map(|entry| &mut entry.1);
-            for array in arrays.chain(&mut piece.coordinates) {
+            for array in arrays.chain(&mut piece.coordinates).chain(&mut piece.point_array) {
                 let Source::Raw { start: offset, .. } = array.source else { continue };
                 array.source = appended
                     .zip(data_end)

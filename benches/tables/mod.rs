@@ -1,0 +1,182 @@
+//! Tables of quality, worst cases and growth; each mesh is checked.
+
+use crate::domains::{Named, all, circle, polygon, rings, square};
+use std::time::Instant;
+use trigrade::check::{CheckOptions, Metric, Report, check};
+use trigrade::domain::Domain;
+use trigrade::domain::validate::validate;
+use trigrade::improve::ImproveOptions;
+use trigrade::mesh::MeshData;
+use trigrade::mesher::{Gradation, Meshed, Observer, Options, Stage, mesh_plc};
+use trigrade::point::Point2;
+
+/// Seconds spent in front and improvement.
+struct Clock {
+    since: Option<Instant>,
+    seconds: f64,
+}
+
+impl Observer for Clock {
+    fn stage(&mut self, stage: Stage) {
+        if let Some(since) = self.since.take() {
+            self.seconds += since.elapsed().as_secs_f64();
+        }
+        if matches!(stage, Stage::Front | Stage::Improve) {
+            self.since = Some(Instant::now());
+        }
+    }
+}
+
+/// A row: figures of one mesh.
+struct Row {
+    triangles: usize,
+    mean: f64,
+    p99: f64,
+    worst: f64,
+    angle: f64,
+    area: f64,
+    seconds: f64,
+}
+
+const HEAD: &str = "domain                      triangles   mean   99 %    max  angle  area99  fit 1/50/99 %      k/s";
+
+fn run(domain: &Domain, options: &Options) -> Result<(Meshed, Report, f64), String> {
+    let plc = validate(domain).map_err(|faults| faults[0].to_string())?;
+    let mut clock = Clock { since: None, seconds: 0.0 };
+    let meshed = mesh_plc(plc, options, &mut clock).map_err(|e| e.to_string())?;
+    let report = check(&MeshData::from(&meshed.mesh), Some(domain), &CheckOptions::default());
+    Ok((meshed, report, clock.seconds))
+}
+
+fn row(name: &str, domain: &Domain, options: &Options) -> Option<Row> {
+    let (meshed, report, seconds) = match run(domain, options) {
+        Ok(done) => done,
+        Err(error) => {
+            println!("{name:26} no mesh: {error}");
+            return None;
+        }
+    };
+    let verdict = if report.passed() { "" } else { "  FAILED its check" };
+    let quality = report.quality.as_ref()?;
+    let shape = quality.summary(Metric::RadiusRatio)?;
+    let triangles = meshed.mesh.triangles.len();
+    let row = Row {
+        triangles,
+        mean: shape.mean?,
+        p99: shape.percentile_99?,
+        worst: shape.max?,
+        angle: quality.summary(Metric::MinAngle)?.min?,
+        area: quality.summary(Metric::NeighbourAreaRatio)?.percentile_99?,
+        seconds,
+    };
+    let fit = meshed
+        .fit
+        .map_or(String::new(), |fit| format!("{:.2} {:.2} {:.2}", fit.low, fit.median, fit.high));
+    println!(
+        "{name:26} {triangles:10} {:6.4} {:6.3} {:6.3} {:6.1} {:7.2}  {fit:16} {:6.0}{verdict}",
+        row.mean,
+        row.p99,
+        row.worst,
+        row.angle,
+        row.area,
+        triangles as f64 / seconds / 1e3,
+    );
+    Some(row)
+}
+
+/// Quality over the domains, default options but for the level of improvement.
+pub fn quality(level: u8) {
+    let options = Options { improve: ImproveOptions::level(level), ..Options::default() };
+    println!("level {level}\n{HEAD}");
+    let rows: Vec<Row> =
+        all().iter().filter_map(|Named { name, domain }| row(name, domain, &options)).collect();
+    let median = |of: fn(&Row) -> f64| {
+        let mut values: Vec<f64> = rows.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let triangles: usize = rows.iter().map(|row| row.triangles).sum();
+    println!(
+        "mean of means {:.4}, median 99 % {:.3}, worst {:.3}, median min angle {:.1}, median \
+         neighbour-area 99 % {:.2}, {:.0} k triangles/s",
+        rows.iter().map(|row| row.mean).sum::<f64>() / rows.len() as f64,
+        median(|row| row.p99),
+        rows.iter().map(|row| row.worst).fold(1.0, f64::max),
+        median(|row| row.angle),
+        median(|row| row.area),
+        triangles as f64 / rows.iter().map(|row| row.seconds).sum::<f64>() / 1e3,
+    );
+}
+
+fn mapped(domain: &Domain, map: impl Fn(Point2) -> Point2) -> Domain {
+    let points = domain.points.iter().map(|&p| map(p)).collect();
+    Domain { points, ..domain.clone() }
+}
+
+fn needles(angle_deg: f64) -> Domain {
+    let height = 2.0 * libm::tan(angle_deg.to_radians() / 2.0);
+    rings(&[vec![
+        Point2::new(0.0, 0.0),
+        Point2::new(1.0, -height / 2.0),
+        Point2::new(1.0, height / 2.0),
+    ]])
+}
+
+/// A circle in whose middle another one leaves a gap.
+fn near_circles(gap: f64) -> Domain {
+    rings(&[
+        circle(0.0, 0.0, 10.0, 80),
+        circle(-1.0 - gap / 2.0, 0.0, 1.0, 200),
+        circle(1.0 + gap / 2.0, 0.0, 1.0, 200),
+    ])
+}
+
+fn holes(side: u32) -> Domain {
+    let n = f64::from(side);
+    let mut all = vec![polygon(&[[0.0, 0.0], [n, 0.0], [n, n], [0.0, n]], &[4 * side], &[1.0])];
+    for i in 0..side * side {
+        all.push(circle(f64::from(i % side) + 0.5, f64::from(i / side) + 0.5, 0.25, 12));
+    }
+    rings(&all)
+}
+
+/// The worst cases: each ends, is checked, and has its figures.
+pub fn worst() {
+    println!("{HEAD}");
+    let jump = polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], &[1000, 1, 1, 1], &[1.0]);
+    let airfoil = crate::domains::naca(200, 60);
+    let cases = [
+        ("gap of 1e-3", near_circles(1e-3)),
+        ("jump of 1000 : 1", rings(&[jump])),
+        ("needle of 1e-6 degrees", needles(1e-6)),
+        ("wedge of 0.5 degrees", needles(0.5)),
+        ("100,000 vertices", rings(&[circle(0.0, 0.0, 1.0, 100_000)])),
+        ("5,041 holes", holes(71)),
+        ("offset of 1e9", mapped(&airfoil, |p| Point2::new(p.x + 1e9, p.y + 1e9))),
+        ("offset of 1e6", mapped(&airfoil, |p| Point2::new(p.x + 1e6, p.y + 1e6))),
+        ("size of 1e-300", mapped(&airfoil, |p| Point2::new(p.x * 1e-300, p.y * 1e-300))),
+        ("size of 1e300", mapped(&airfoil, |p| Point2::new(p.x * 1e300, p.y * 1e300))),
+        ("size of 1e-9", mapped(&airfoil, |p| Point2::new(p.x * 1e-9, p.y * 1e-9))),
+    ];
+    for (name, domain) in &cases {
+        row(name, domain, &Options::default());
+    }
+}
+
+/// Time and its exponent over the number of triangles of uniform squares.
+pub fn growth(side: u32) {
+    println!("{HEAD}");
+    let options = Options { gradation: Gradation::Uniform, ..Options::default() };
+    let mut before: Option<(f64, f64)> = None;
+    let mut n = 125;
+    while n <= side {
+        if let Some(row) = row(&format!("square, {n} a side"), &square(n), &options) {
+            let (size, time) = (row.triangles as f64, row.seconds);
+            if let Some((s, t)) = before {
+                println!("{:26} exponent {:.3}", "", libm::log(time / t) / libm::log(size / s));
+            }
+            before = Some((size, time));
+        }
+        n *= 2;
+    }
+}
