@@ -26,9 +26,13 @@ pub mod triangulate;
 pub mod triangulation;
 pub mod voronoi;
 
+pub mod curve;
 pub mod domain;
 pub mod mesh;
+pub mod metric;
 pub mod point;
+pub mod surface;
+pub mod vector;
 
 pub mod check;
 pub mod draw;

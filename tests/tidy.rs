@@ -106,7 +106,8 @@ fn is_of(name: &str, module: &str) -> bool {
 }
 
 /// Plain data and what both halves of the house may use.
-const PLAIN: [&str; 3] = ["point", "mesh", "domain"];
+const PLAIN: [&str; 8] =
+    ["vector", "point", "curve", "surface", "metric", "model", "mesh", "domain"];
 
 // spec: C1 K7
 #[test]
