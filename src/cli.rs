@@ -17,6 +17,7 @@ pub mod outcome;
 pub mod output;
 pub mod point_file;
 pub mod refinement;
+pub mod surface;
 pub mod torture;
 pub mod verdict;
 pub mod voronoi;
