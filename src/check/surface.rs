@@ -9,7 +9,7 @@ use crate::curve::Curve;
 use crate::mesh::MeshData;
 use crate::metric::{FirstForm, normal};
 use crate::model::Model;
-use crate::surface::{Side, Surface};
+use crate::surface::{Side, Surface, Tangents};
 use crate::vector::{
     Vector, add, cross, distance, dot, key, scale, segment_distance_sq, sub, unit,
 };
@@ -55,8 +55,10 @@ pub struct SurfaceReport {
 
 /// Points in each direction of the lattice on a patch.
 const LATTICE: u32 = 25;
-/// Most steps to the foot of a sample.
-const FOOT_STEPS: usize = 10;
+/// Most steps to the foot of a sample; three or four are the rule.
+const FOOT_STEPS: usize = 30;
+/// Most times that a step is halved.
+const HALVINGS: u32 = 8;
 /// Lattice points that the foot is searched from.
 const SEEDS: usize = 3;
 /// A vertex on the surface may be off by this fraction of the model's size: rounding.
@@ -180,36 +182,56 @@ impl Sheets {
         best
     }
 
-    /// Gauss and Newton's steps, kept in the rectangle of parameters.
+    /// Gauss and Newton's steps, kept in the rectangle of parameters; a step that leads farther away
+    /// is halved.
     fn foot_from(&self, seed: Seed, p: Vector) -> Foot {
         let surface = &self.pieces[seed.piece].0;
-        let [[u0, u1], [v0, v1]] = surface.domain();
-        let [mut u, mut v] = seed.at;
-        let mut best = Foot { piece: seed.piece, distance: f64::INFINITY, normal: None };
+        let mut at = seed.at;
+        let mut tangents = surface.tangents(at[0], at[1]);
+        let mut nearest = distance(p, tangents.point);
         for _ in 0..FOOT_STEPS {
-            let tangents = surface.tangents(u, v);
-            let gap = sub(p, tangents.point);
-            let away = distance(p, tangents.point);
-            let settled = away >= best.distance * (1.0 - 1e-12);
-            if away < best.distance {
-                best = Foot { distance: away, normal: normal(&tangents), ..best };
-            }
-            if settled {
+            let step = foot_step(&tangents, sub(p, tangents.point), at, surface.domain());
+            let closer = (0..HALVINGS).find_map(|halvings| {
+                let part = 1.0 / f64::from(1_u32 << halvings);
+                let place = clamped([at[0] + part * step[0], at[1] + part * step[1]], surface);
+                let there = surface.tangents(place[0], place[1]);
+                (distance(p, there.point) < nearest).then_some((place, there))
+            });
+            let Some((place, there)) = closer else { break };
+            let gain = nearest - distance(p, there.point);
+            (at, tangents, nearest) = (place, there, nearest - gain);
+            if gain <= 1e-14 * self.size {
                 break;
             }
-            let FirstForm { e, f, g } = FirstForm::new(&tangents);
-            let (du, dv) = (dot(gap, tangents.u), dot(gap, tangents.v));
-            let determinant = e * g - f * f;
-            let step = [(g * du - f * dv) / determinant, (e * dv - f * du) / determinant];
-            // At a pole one direction says nothing: the other one alone still leads on.
-            let step = match step.iter().all(|x| x.is_finite()) {
-                true => step,
-                false => [if e > 0.0 { du / e } else { 0.0 }, if g > 0.0 { dv / g } else { 0.0 }],
-            };
-            u = (u + step[0]).clamp(u0, u1);
-            v = (v + step[1]).clamp(v0, v1);
         }
-        best
+        Foot { piece: seed.piece, distance: nearest, normal: normal(&tangents) }
+    }
+}
+
+fn clamped([u, v]: [f64; 2], surface: &Surface) -> [f64; 2] {
+    let [[u0, u1], [v0, v1]] = surface.domain();
+    [u.clamp(u0, u1), v.clamp(v0, v1)]
+}
+
+/// Newton's step towards the foot in the tangent plane. On a side of the rectangle that the step
+/// would leave, and where the map is singular, the step is the best one along the other parameter.
+fn foot_step(tangents: &Tangents, gap: Vector, at: [f64; 2], domain: [[f64; 2]; 2]) -> [f64; 2] {
+    let FirstForm { e, f, g } = FirstForm::new(tangents);
+    let (du, dv) = (dot(gap, tangents.u), dot(gap, tangents.v));
+    let determinant = e * g - f * f;
+    let step = [(g * du - f * dv) / determinant, (e * dv - f * du) / determinant];
+    let alone = |d: f64, length_sq: f64| if length_sq > 0.0 { d / length_sq } else { 0.0 };
+    if determinant <= 1e-24 * e * g || !step.iter().all(|x| x.is_finite()) {
+        return [alone(du, e), alone(dv, g)];
+    }
+    let leaves = |i: usize| {
+        (at[i] <= domain[i][0] && step[i] < 0.0) || (at[i] >= domain[i][1] && step[i] > 0.0)
+    };
+    match (leaves(0), leaves(1)) {
+        (false, false) => step,
+        (true, false) => [0.0, alone(dv, g)],
+        (false, true) => [alone(du, e), 0.0],
+        (true, true) => [alone(du, e), alone(dv, g)],
     }
 }
 
