@@ -22,7 +22,7 @@ pub enum Surface {
     /// Tensor product of B-splines or NURBS.
     Tensor(Tensor),
     /// Bilinear Coons patch.
-    Coons(Coons),
+    Coons(Box<Coons>),
     /// Surface of revolution.
     Revolution(Revolution),
 }

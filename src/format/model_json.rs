@@ -138,7 +138,7 @@ impl Reader {
             Ok([side(Side::South)?, side(Side::East)?, side(Side::North)?, side(Side::West)?])
         })?;
         let coons = Coons::new(sides, self.model.corner_tolerance);
-        coons.map(Surface::Coons).map_err(|error| item.error(error.into()))
+        coons.map(|coons| Surface::Coons(Box::new(coons))).map_err(|error| item.error(error.into()))
     }
 
     fn revolution(&mut self, item: Item) -> Read<Revolution> {

@@ -60,8 +60,8 @@ impl Cell {
     fn distances(self, p: Vector) -> (f64, f64) {
         let half = self.size / 2.0;
         let (mut near, mut far) = (0.0, 0.0);
-        for i in 0..3 {
-            let d = (p[i] - (self.origin[i] + half)).abs();
+        for (x, origin) in p.into_iter().zip(self.origin) {
+            let d = (x - (origin + half)).abs();
             near += (d - half).max(0.0).powi(2);
             far += (d + half).powi(2);
         }

@@ -21,7 +21,6 @@ pub(super) struct Draft<'a> {
 
 /// A patch with its mesh.
 pub(super) struct PatchMesh {
-    pub(super) points: Vec<Point2>,
     pub(super) lifts: Vec<Lift>,
     pub(super) mesh: Triangulation,
     pub(super) stats: FrontStats,
@@ -112,7 +111,7 @@ impl<'a> Draft<'a> {
             }
         }
         flips += flip::towards_shape(&mut mesh, &points, &lifts);
-        Ok(PatchMesh { points, lifts, mesh, stats, flips, moves })
+        Ok(PatchMesh { lifts, mesh, stats, flips, moves })
     }
 }
 
