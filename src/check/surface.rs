@@ -97,14 +97,14 @@ struct Measured {
     vertex_error: f64,
     /// Piece of the model that the centre's foot lies on.
     piece: usize,
-    /// Cosine between the normals.
-    cosine: f64,
+    /// Cosine between the normals; `None` where one of them has no direction.
+    cosine: Option<f64>,
 }
 
 impl Measured {
     /// Angle between the lines of the normals.
     fn turn_deg(&self) -> f64 {
-        libm::acos(self.cosine.abs().clamp(0.0, 1.0)).to_degrees()
+        libm::acos(self.cosine.unwrap_or(1.0).abs().clamp(0.0, 1.0)).to_degrees()
     }
 }
 
@@ -160,7 +160,7 @@ impl Sheets {
             points.map(|p| self.foot(tree, p).distance).into_iter().fold(0.0, f64::max)
         };
         let up = unit(cross(sub(b, a), sub(c, a)));
-        let cosine = up.zip(centre.normal).map_or(1.0, |(up, normal)| dot(up, normal));
+        let cosine = up.zip(centre.normal).map(|(up, normal)| dot(up, normal));
         Some(Measured {
             triangle: t,
             chord_error: worst(sides).max(centre.distance),
@@ -195,7 +195,9 @@ impl Sheets {
                 let part = 1.0 / f64::from(1_u32 << halvings);
                 let place = clamped([at[0] + part * step[0], at[1] + part * step[1]], surface);
                 let there = surface.tangents(place[0], place[1]);
-                (distance(p, there.point) < nearest).then_some((place, there))
+                // A pole has no way on: all directions but one are the same point.
+                (distance(p, there.point) < nearest && normal(&there).is_some())
+                    .then_some((place, there))
             });
             let Some((place, there)) = closer else { break };
             let gain = nearest - distance(p, there.point);
@@ -293,13 +295,14 @@ impl SurfaceReport {
 
     /// Triangles that face against most others of their piece.
     fn find_folds(&mut self, measured: &[Option<Measured>]) {
+        let facing = || measured.iter().flatten().filter_map(|m| m.cosine.map(|c| (m, c < 0.0)));
         let mut votes: BTreeMap<usize, [u64; 2]> = BTreeMap::new();
-        for m in measured.iter().flatten() {
-            votes.entry(m.piece).or_default()[usize::from(m.cosine < 0.0)] += 1;
+        for (m, is_against) in facing() {
+            votes.entry(m.piece).or_default()[usize::from(is_against)] += 1;
         }
-        let mut folded = measured.iter().flatten().filter(|m| {
+        let mut folded = facing().filter_map(|(m, is_against)| {
             let [with, against] = votes[&m.piece];
-            (m.cosine < 0.0) != (against > with)
+            (is_against != (against > with)).then_some(m)
         });
         if let Some(first) = folded.next() {
             let (count, triangle) = (1 + folded.count(), first.triangle);
