@@ -335,8 +335,8 @@ impl<'a, C: Chart> Front<'a, C> {
     /// Adds the open half-edges at the ends of a base edge, those of its own triangle last.
     fn push_spokes(&self, base: HalfEdgeId, list: &mut Vec<HalfEdgeId>) {
         for (first, turn) in [
-            (base.prev(), HalfEdgeId::prev as fn(HalfEdgeId) -> HalfEdgeId),
-            (base.next(), HalfEdgeId::next),
+            (base.next(), HalfEdgeId::next as fn(HalfEdgeId) -> HalfEdgeId),
+            (base.prev(), HalfEdgeId::prev),
         ] {
             let start = list.len();
             list.push(first);
