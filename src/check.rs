@@ -34,9 +34,11 @@ pub mod size;
 mod space;
 mod status;
 mod structure;
+pub mod surface;
 mod sweep;
 mod topology;
 mod tree;
+mod tree3;
 pub mod wide;
 
 pub use gate::{Baseline, Gate, GateError, GateFile, GateOutcome, GateResult};

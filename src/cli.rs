@@ -18,6 +18,7 @@ pub mod output;
 pub mod point_file;
 pub mod refinement;
 pub mod size_file;
+pub mod surface;
 pub mod torture;
 pub mod verdict;
 pub mod voronoi;

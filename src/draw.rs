@@ -25,6 +25,7 @@ mod page;
 mod palette;
 mod panel;
 mod path;
+mod perspective;
 #[cfg(feature = "png")]
 mod png;
 mod text;
@@ -37,6 +38,7 @@ pub use frame::{ParseViewError, View};
 pub use html::{Background, Viewer, html};
 pub use layer::{Better, Layer};
 pub use palette::{Palette, ParsePaletteError};
+pub use perspective::{is_in_space, perspective};
 
 /// One mesh in a picture.
 #[derive(Clone, Debug)]
@@ -213,6 +215,20 @@ pub fn png(panels: &[Panel<'_>], options: &Options) -> Result<Vec<u8>, DrawError
     check_input(panels, options)?;
     let dots = f64::from(options.png_scale);
     png::png(&page::Page::new(panels, options).rasterised(dots), options)
+}
+
+/// Draws a surface in space as a PNG: the picture of [`perspective`].
+///
+/// # Errors
+/// Those of [`perspective`], and when the picture is too large for memory.
+#[cfg(feature = "png")]
+pub fn perspective_png(
+    mesh: &MeshData,
+    title: &str,
+    options: &Options,
+) -> Result<Vec<u8>, DrawError> {
+    let (svg, _) = perspective(mesh, title, options)?;
+    png::rasterise(&svg, options.png_scale)
 }
 
 /// The widest page: beyond it SVG viewers lose precision.

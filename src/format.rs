@@ -9,6 +9,7 @@
 mod abaqus;
 pub mod airfoil;
 mod assemble;
+mod curve_json;
 mod domain_builder;
 pub mod domain_file;
 pub mod domain_json;
@@ -18,6 +19,7 @@ mod fort14;
 pub mod geojson;
 mod medit;
 pub mod mesh_json;
+pub mod model_json;
 mod msh;
 mod msh22;
 mod msh41;

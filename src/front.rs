@@ -17,15 +17,18 @@
 
 mod candidate;
 mod cavity;
+pub mod chart;
 mod fan;
 mod queue;
 mod vertex;
 
 use crate::point::Point2;
+use crate::predicates::{Sign, orient2d};
 use crate::size::{Base, Hint, SizeField};
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
-use candidate::{Neighbours, Trial};
-use cavity::Cavity;
+use candidate::{Candidate, Candidates, Neighbours, Trial};
+use cavity::{Cavity, Probe};
+use chart::{Chart, Plane, Site};
 use fan::Fan;
 use queue::Queue;
 use vertex::Vertices;
@@ -102,6 +105,8 @@ pub enum FrontError {
 /// Called every few thousand steps with the number of accepted triangles; `false` stops the front.
 pub type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;
 
+/// Flips before a step on a surface.
+const FLIPS_MAX: u32 = 64;
 /// Steps between two calls of the observer.
 const PROGRESS_STEPS: u64 = 1 << 13;
 
@@ -115,15 +120,17 @@ struct FrontEdge {
     alive: bool,
 }
 
-struct Front<'a> {
+struct Front<'a, C: Chart> {
     open: Triangulation,
     accepted: Triangulation,
-    vertices: Vertices,
+    vertices: Vertices<C::Lift>,
     edges: Vec<FrontEdge>,
     free_edges: Vec<u32>,
     queue: Queue,
     cavity: Cavity,
-    field: &'a SizeField,
+    /// Scratch space of [`legalise`](Self::legalise).
+    suspects: Vec<HalfEdgeId>,
+    chart: &'a C,
     options: FrontOptions,
     stats: FrontStats,
     /// The initial edges in an order that depends on coordinates only.
@@ -144,7 +151,23 @@ pub fn advance(
     options: FrontOptions,
     progress: Progress<'_>,
 ) -> Result<FrontMesh, FrontError> {
-    let mut front = Front::new(start, field, options);
+    let lifts = vec![(); start.points.len()];
+    advance_on(start, lifts, &Plane { field }, options, progress).map(|(mesh, _)| mesh)
+}
+
+/// The same in any chart; `lifts` is what lies above the start's points. Returns what lies above
+/// the points of the mesh, too.
+///
+/// # Errors
+/// As [`advance`].
+pub fn advance_on<C: Chart>(
+    start: Start,
+    lifts: Vec<C::Lift>,
+    chart: &C,
+    options: FrontOptions,
+    progress: Progress<'_>,
+) -> Result<(FrontMesh, Vec<C::Lift>), FrontError> {
+    let mut front = Front::new(start, lifts, chart, options);
     front.fan_corners();
     let mut steps = 0;
     while let Some(id) = front.queue.pop() {
@@ -161,12 +184,12 @@ pub fn advance(
         front.free_edges.push(id);
     }
     debug_assert_eq!(front.open.live_count(), 0, "the front ended with an open triangle");
-    let (points, spacing) = front.vertices.into_points_and_spacing();
-    Ok(FrontMesh { points, mesh: front.accepted, spacing, stats: front.stats })
+    let (points, lifts, spacing) = front.vertices.into_parts();
+    Ok((FrontMesh { points, mesh: front.accepted, spacing, stats: front.stats }, lifts))
 }
 
-impl<'a> Front<'a> {
-    fn new(start: Start, field: &'a SizeField, options: FrontOptions) -> Self {
+impl<'a, C: Chart> Front<'a, C> {
+    fn new(start: Start, lifts: Vec<C::Lift>, chart: &'a C, options: FrontOptions) -> Self {
         let edges = start
             .edges
             .iter()
@@ -181,12 +204,13 @@ impl<'a> Front<'a> {
         let mut front = Self {
             open: start.region,
             accepted: Triangulation::default(),
-            vertices: Vertices::new(start.points, start.spacing),
+            vertices: Vertices::new(start.points, lifts, start.spacing),
             edges,
             free_edges: Vec::new(),
             queue: Queue::new(options.order),
             cavity: Cavity::default(),
-            field,
+            suspects: Vec::new(),
+            chart,
             options,
             stats: FrontStats::default(),
             start_order: Vec::new(),
@@ -207,8 +231,8 @@ impl<'a> Front<'a> {
             let ([a, b], [c, d]) = (key(i), key(j));
             a.lexicographic(c).then_with(|| b.lexicographic(d))
         });
-        let lengths: Vec<f64> = order.iter().map(|id| key(id)[0].distance(key(id)[1])).collect();
-        self.queue.set_unit(lengths.into_iter().fold(f64::INFINITY, f64::min));
+        let shortest = order.iter().map(|&id| self.length(id)).fold(f64::INFINITY, f64::min);
+        self.queue.set_unit(shortest);
         let mut queued = vec![false; self.edges.len()];
         for &first in &order {
             let mut id = first;
@@ -232,48 +256,118 @@ impl<'a> Front<'a> {
         }
     }
 
+    /// Length of a front edge. That of a pole is infinite, so that it comes last: its triangle is
+    /// an edge in space, and what it looks like must be left to its neighbours.
+    fn length(&self, id: u32) -> f64 {
+        let e = self.edges[id as usize].half_edge;
+        let [a, b] = self.ends(e);
+        let length = self.chart.distance_sq(a, b).sqrt();
+        if C::CURVED && length == 0.0 { f64::INFINITY } else { length }
+    }
+
+    fn ends(&self, e: HalfEdgeId) -> [Site<C::Lift>; 2] {
+        [self.open.origin(e), self.open.dest(e)].map(|v| self.vertices.site(v))
+    }
+
     fn enqueue(&mut self, id: u32) {
         let e = self.edges[id as usize].half_edge;
         let (a, b) = (self.open.origin(e), self.open.dest(e));
-        let length = self.vertices.point(a).distance(self.vertices.point(b));
+        let length = self.length(id);
         let depth = 0.5 * (self.vertices.depth(a) + self.vertices.depth(b));
         self.queue.push(id, length, depth, [self.vertices.point(a), self.vertices.point(b)]);
     }
 
     /// One step on a base edge: a trial point if one is good enough, else the open triangle.
     fn step(&mut self, id: u32) {
-        let base = self.edges[id as usize].half_edge;
         let mut hint = self.edges[id as usize].hint;
-        for trial in self.trials(base, &mut hint).into_iter().flatten() {
-            if self.admits(base, &trial) {
-                self.insert(id, trial, hint);
-                return;
+        if let Some(frame) = self.chart.frame(self.ends(self.edges[id as usize].half_edge)) {
+            if C::CURVED {
+                self.legalise(id, &frame);
             }
-            self.stats.rejected += 1;
+            let base = self.edges[id as usize].half_edge;
+            for candidate in self.candidates(&frame, base, &mut hint).into_iter().flatten() {
+                let trial = self.placed(&frame, &candidate);
+                if let Some(trial) = trial.filter(|trial| self.admits(base, trial)) {
+                    self.insert(id, trial, hint);
+                    return;
+                }
+                self.stats.rejected += 1;
+            }
         }
         self.accept_existing(id);
     }
 
-    /// The trial points that score better than the open triangle's own apex, best first.
-    fn trials(&self, base: HalfEdgeId, hint: &mut Hint) -> candidate::Trials {
-        let neighbours = Neighbours::around(&self.open, &self.vertices, base);
-        let length = neighbours.mean_spacing();
-        let mut trials =
-            candidate::trials(&neighbours, self.options.rules, self.options.clamp, |p| {
-                self.field.at(p, Base { length }, hint)
-            });
-        if let Some(quantum) = self.options.quantum {
-            for trial in trials.iter_mut().flatten() {
-                trial.point = trial.point.rounded_to(quantum);
+    /// Flips open edges around the triangle on a base edge until it is Delaunay as the metric there
+    /// sees it, so that its apex is the right existing vertex: what the plane has anyhow. Flips are
+    /// valid by exact signs, and bounded in number, since the metric is not the same everywhere.
+    fn legalise(&mut self, id: u32, frame: &C::Frame) {
+        let circle = self.chart.circle_at(frame);
+        let base = self.edges[id as usize].half_edge;
+        let mut suspects = std::mem::take(&mut self.suspects);
+        self.push_spokes(base, &mut suspects);
+        let mut flips = 0;
+        while let Some(e) = suspects.pop() {
+            let Across::Twin(twin) = self.open.across(e) else { continue };
+            let quad = [self.open.origin(e), self.open.dest(e), self.open.apex(e)];
+            let corners = quad.map(|v| self.vertices.point(v));
+            let ([a, b, c], d) = (corners, self.vertices.point(self.open.apex(twin)));
+            let is_left = |p, q, r| orient2d(p, q, r) == Sign::Positive;
+            if self.chart.in_circle(&circle, corners, d) && is_left(a, d, c) && is_left(d, b, c) {
+                let e = self.open.flip(e);
+                let twin = self.open.twin(e).expect("a flipped edge has two sides");
+                for side in [e.next(), e.prev(), twin.next(), twin.prev()] {
+                    if let Across::Border(owner) = self.open.across(side) {
+                        self.edges[owner as usize].half_edge = side;
+                    } else {
+                        suspects.push(side);
+                    }
+                }
+                flips += 1;
+                if flips == FLIPS_MAX {
+                    break;
+                }
             }
         }
-        trials
+        suspects.clear();
+        self.suspects = suspects;
+    }
+
+    /// Adds the open half-edges at the ends of a base edge, those of its own triangle last.
+    fn push_spokes(&self, base: HalfEdgeId, list: &mut Vec<HalfEdgeId>) {
+        for (first, turn) in [
+            (base.next(), HalfEdgeId::next as fn(HalfEdgeId) -> HalfEdgeId),
+            (base.prev(), HalfEdgeId::prev),
+        ] {
+            let start = list.len();
+            list.push(first);
+            while let Across::Twin(twin) = self.open.across(list[list.len() - 1]) {
+                list.push(turn(twin));
+            }
+            list[start..].reverse();
+        }
+    }
+
+    /// The trial points that score better than the open triangle's own apex, best first.
+    fn candidates(&self, frame: &C::Frame, base: HalfEdgeId, hint: &mut Hint) -> Candidates {
+        let neighbours = Neighbours::around(self.chart, frame, &self.open, &self.vertices, base);
+        let length = neighbours.mean_spacing();
+        candidate::trials(&neighbours, self.options.rules, self.options.clamp, |p| {
+            self.chart.spacing(frame, p, Base { length }, hint)
+        })
+    }
+
+    fn placed(&self, frame: &C::Frame, candidate: &Candidate) -> Option<Trial<C::Lift>> {
+        let mut site = self.chart.place(frame, candidate.point)?;
+        if let Some(quantum) = self.options.quantum {
+            site.at = site.at.rounded_to(quantum);
+        }
+        Some(Trial::placed(site, candidate))
     }
 
     /// Whether the trial's exact cavity is sound and its clearances are kept.
-    fn admits(&mut self, base: HalfEdgeId, trial: &Trial) -> bool {
-        self.cavity.carve(&mut self.open, &self.vertices, base, trial)
-            && self.cavity.is_clear(&self.vertices, trial)
+    fn admits(&mut self, base: HalfEdgeId, trial: &Trial<C::Lift>) -> bool {
+        let probe = Probe::new(self.chart, &self.vertices, trial);
+        self.cavity.carve(&mut self.open, &probe, base) && self.cavity.is_clear(&probe)
     }
 
     fn accept_existing(&mut self, id: u32) {
@@ -325,10 +419,10 @@ impl<'a> Front<'a> {
 
     /// Inserts the trial point into its carved cavity, accepts the triangle on the base edge, and
     /// returns the two new front edges: from the base's origin, and to its destination.
-    fn insert(&mut self, id: u32, trial: Trial, hint: Hint) -> [u32; 2] {
+    fn insert(&mut self, id: u32, trial: Trial<C::Lift>, hint: Hint) -> [u32; 2] {
         self.stats.inserted += 1;
         let FrontEdge { half_edge: base, outer, .. } = self.edges[id as usize];
-        let p = self.vertices.push(trial.point, trial.spacing, trial.depth);
+        let p = self.vertices.push(trial.site, trial.spacing, trial.depth);
         let t = self.accept(base, p, outer);
         self.edges[id as usize].alive = false;
         let fan = self.cavity.fill(&mut self.open, p);
@@ -358,30 +452,35 @@ impl<'a> Front<'a> {
         let out = self.edges[id as usize].half_edge;
         let before = self.previous_front_edge(id);
         let into = self.edges[before as usize].half_edge;
-        let point = |v| self.vertices.point(v);
+        let Some(frame) = self.chart.frame(self.ends(out)) else { return };
+        let point = |v| self.chart.local(&frame, self.vertices.site(v));
         let [corner, next, last] =
             [self.open.origin(out), self.open.dest(out), self.open.origin(into)].map(point);
         let (long, short) = (corner.distance(next), corner.distance(last));
         let turn = fan::angle(corner, next, last);
         if let Some(fan) = Fan::between(long, short, turn) {
-            self.lay_fan(id, fan, corner, next, true);
+            self.lay_fan(id, fan, &frame, [corner, next], true);
         } else if let Some(fan) = Fan::between(short, long, turn) {
-            self.lay_fan(before, fan, corner, last, false);
+            self.lay_fan(before, fan, &frame, [corner, last], false);
         }
     }
 
     /// Lays the triangles of a fan but the last, which the short edge closes, as far as they fit.
-    fn lay_fan(&mut self, id: u32, fan: Fan, corner: Point2, end: Point2, outgoing: bool) {
-        let (mut id, mut end) = (id, end);
+    fn lay_fan(
+        &mut self,
+        mut id: u32,
+        fan: Fan,
+        frame: &C::Frame,
+        [corner, mut end]: [Point2; 2],
+        outgoing: bool,
+    ) {
         for _ in 1..fan.triangles {
             let FrontEdge { half_edge: base, mut hint, .. } = self.edges[id as usize];
             end = fan.next(corner, end, outgoing);
             let length = self.vertices.spacing(self.open.origin(base));
-            let spacing = self.field.at(end, Base { length }, &mut hint);
-            let trial = Trial::given(end, spacing);
-            if !self.admits(base, &trial) {
-                return;
-            }
+            let spacing = self.chart.spacing(frame, end, Base { length }, &mut hint);
+            let trial = self.chart.place(frame, end).map(|site| Trial::given(site, spacing));
+            let Some(trial) = trial.filter(|trial| self.admits(base, trial)) else { return };
             let [from_a, to_b] = self.insert(id, trial, hint);
             id = if outgoing { from_a } else { to_b };
         }

@@ -22,13 +22,19 @@ pub mod predicates;
 pub mod refine;
 pub mod size;
 pub mod subdivide;
+pub mod surface_mesher;
 pub mod triangulate;
 pub mod triangulation;
 pub mod voronoi;
 
+pub mod curve;
 pub mod domain;
 pub mod mesh;
+pub mod metric;
+pub mod model;
 pub mod point;
+pub mod surface;
+pub mod vector;
 
 pub mod check;
 pub mod draw;

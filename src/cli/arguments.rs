@@ -92,9 +92,11 @@ Examples:
   trigrade mesh naca.dat --farfield 15,60 -o naca.vtu
   trigrade mesh lake.poly --method delaunay --min-angle 25 --split-boundary -o lake.msh
   trigrade mesh - --from poly --form off -o - < wing.poly > wing.off
-  trigrade mesh wing.poly --method afm --dry-run")]
+  trigrade mesh wing.poly --method afm --dry-run
+  trigrade mesh vase.json --spacing 0.05 -o vase.stl -o vase.msh")]
 pub struct MeshArguments {
-    /// The domain: .poly, .json, .geojson or an airfoil .dat; `-` is standard input.
+    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json; `-` is
+    /// standard input.
     #[arg(value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
     pub domain: PathBuf,
     /// Where the mesh goes; the extension names the form, `-` is standard output; repeatable.
@@ -111,6 +113,9 @@ pub struct MeshArguments {
     /// What is built.
     #[command(flatten)]
     pub options: MeshOptions,
+    /// What is built on a surface.
+    #[command(flatten)]
+    pub on_surface: SurfaceFlags,
     /// Print the predicted number of triangles and stop.
     #[arg(long)]
     pub dry_run: bool,
@@ -140,7 +145,7 @@ pub struct MeshReading {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Domain")]
 pub struct DomainReading {
-    /// Form of the domain, whatever its extension: poly, json, geojson, dat.
+    /// Form of the domain, whatever its extension: poly, json, geojson, dat, or model.
     #[arg(long, value_name = "FORM")]
     pub from: Option<String>,
     /// Far-field circle around an airfoil: its radius in chords and its number of points.
@@ -286,6 +291,18 @@ impl MeshOptions {
             _ => None,
         }
     }
+}
+
+/// What the mesher is asked to do on a surface model.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Surface models")]
+pub struct SurfaceFlags {
+    /// Largest distance of a triangle from the surface: edges are shorter where it bends.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    pub chord_error: Option<f64>,
+    /// Largest turn of the surface's normal along an edge, in degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
+    pub angle_per_edge: Option<f64>,
 }
 
 /// `--method`
@@ -493,6 +510,15 @@ pub struct CheckArguments {
     /// Far-field circle, as it was given to `mesh`.
     #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
     pub farfield: Option<Farfield>,
+    /// The surface model that the mesh must be a mesh of.
+    #[arg(long, value_name = "MODEL", value_hint = ValueHint::FilePath, conflicts_with = "domain")]
+    pub surface: Option<PathBuf>,
+    /// No triangle may be farther from the surface than this.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive, requires = "surface")]
+    pub chord_error: Option<f64>,
+    /// No triangle's normal may be off the surface's by more than this, in degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = parse_positive, requires = "surface")]
+    pub normal_deviation: Option<f64>,
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,

@@ -11,11 +11,13 @@ use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::size_file::load_node_data;
+use super::surface;
 use super::verdict;
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::size::{SizeFit, size_fit};
-use crate::check::{Baseline, CheckOptions, GateError, GateFile, Report, check};
+use crate::check::surface::{SurfaceLimits, against_model};
+use crate::check::{Baseline, CheckOptions, Dimension, GateError, GateFile, Report, check};
 use crate::domain::Domain;
 use crate::draw;
 use crate::format::MeshView;
@@ -33,11 +35,15 @@ pub fn run(
     console: &Console,
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
+    let model = arguments.surface.as_deref().map(surface::load_model).transpose()?;
     let certified = arguments.verify_certificate.as_deref().map(load_certificate).transpose()?;
-    let options = match &certified {
+    let mut options = match &certified {
         Some(certificate) => certificate.options(),
         None => options(arguments)?,
     };
+    if model.is_some() {
+        options.dimension = Dimension::Space;
+    }
     let side = SideFiles::prepare(arguments, cleanup)?;
     let mut watch = Watch::new(console);
     watch.begin("read");
@@ -64,6 +70,14 @@ pub fn run(
         let laps: Vec<String> =
             laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
         outcome.text.push_str(&format!("\n  {:<11}{}", "time", laps.join(", ")));
+    }
+    if let Some((_, model)) = &model {
+        let limits = SurfaceLimits {
+            chord_error: arguments.chord_error,
+            normal_deviation_deg: arguments.normal_deviation,
+        };
+        let found = against_model(&files.loaded.mesh, model, &limits);
+        surface::tell(&found, &files.loaded.name, &mut outcome);
     }
     if let (Some(certified), Some(fresh)) = (certified, fresh) {
         confirm(&certified, &fresh, &mut outcome);

@@ -13,6 +13,7 @@ use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
 use super::refinement::Refinement;
 use super::size_file::load_size_field;
+use super::surface;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, time};
 use crate::check::certificate::{Certificate, FileHash};
@@ -37,6 +38,9 @@ pub fn run(
     console: &Console,
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
+    if surface::is_model(arguments)? {
+        return surface::run(arguments, console, cleanup);
+    }
     let mut watch = Watch::new(console);
     if let Some(flag) = arguments.options.idle_flag() {
         let message = format!("{flag} has a meaning with `--method delaunay` only");
@@ -69,7 +73,7 @@ pub fn run(
     write_all(&mut outputs, &files, &meshed)?;
     if !arguments.no_check {
         watch.begin("read back");
-        let meshes = read_back(&outputs, &files, &meshed)?;
+        let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
         watch.begin("check");
         summary.check = Some(check_all(&meshes, &domain)?);
         if arguments.certificate.is_some() {
@@ -85,7 +89,7 @@ pub fn run(
     Ok(summary.outcome(laps, arguments.timings))
 }
 
-fn paths(files: &[OutputFile]) -> Vec<PathBuf> {
+pub(super) fn paths(files: &[OutputFile]) -> Vec<PathBuf> {
     files.iter().map(|file| file.path.clone()).collect()
 }
 
@@ -146,10 +150,10 @@ fn write_all(outputs: &mut Outputs, files: &[OutputFile], meshed: &Meshed) -> Re
 
 /// Every written mesh that can be read, read from its bytes; where none can, the mesh written to
 /// an OFF file and read from there.
-fn read_back(
+pub(super) fn read_back(
     outputs: &Outputs,
     files: &[OutputFile],
-    meshed: &Meshed,
+    mesh: MeshView<'_>,
 ) -> Result<Vec<(String, MeshData)>, Failure> {
     let mut meshes = Vec::new();
     let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
@@ -170,15 +174,15 @@ fn read_back(
         }
     }
     if meshes.is_empty() {
-        meshes.push(("a temporary OFF file".into(), through_off(meshed)?));
+        meshes.push(("a temporary OFF file".into(), through_off(mesh)?));
     }
     Ok(meshes)
 }
 
-fn through_off(meshed: &Meshed) -> Result<MeshData, Failure> {
+fn through_off(mesh: MeshView<'_>) -> Result<MeshData, Failure> {
     let mut bytes = Vec::new();
     let options = WriteOptions::default();
-    write_mesh(MeshView::from(&meshed.mesh), MeshForm::Off, options, &mut bytes)
+    write_mesh(mesh, MeshForm::Off, options, &mut bytes)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
     parse(&bytes, MeshForm::Off, &[], false).map_err(|e| unreadable("a temporary OFF file", &e))
 }

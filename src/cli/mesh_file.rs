@@ -218,6 +218,11 @@ impl<'a> Drawing<'a> {
         draw::Options { width: self.width, ..draw::Options::default() }
     }
 
+    /// Surfaces in space are drawn in perspective, unless a window of the plane is asked for.
+    fn is_in_space(&self) -> bool {
+        self.view.is_none() && self.highlights.is_empty() && draw::is_in_space(self.mesh)
+    }
+
     fn panel<'b>(&'b self, layer: &'b Layer) -> Panel<'b> {
         let mut panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
         panel.highlights = &self.highlights;
@@ -227,20 +232,26 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// As SVG, coloured by R / 2r.
+    /// As SVG: coloured by R / 2r, or a surface in space shaded.
     ///
     /// # Errors
     /// A view or page that cannot be drawn.
     pub fn svg(&self) -> Result<String, DrawError> {
+        if self.is_in_space() {
+            return Ok(draw::perspective(self.mesh, &self.title, &self.options())?.0);
+        }
         let layer = Layer::radius_ratio(self.mesh);
         draw::svg(&[self.panel(&layer)], &self.options())
     }
 
-    /// As PNG, coloured by R / 2r.
+    /// As PNG, likewise.
     ///
     /// # Errors
     /// A view or page that cannot be drawn.
     pub fn png(&self) -> Result<Vec<u8>, DrawError> {
+        if self.is_in_space() {
+            return draw::perspective_png(self.mesh, &self.title, &self.options());
+        }
         let layer = Layer::radius_ratio(self.mesh);
         draw::png(&[self.panel(&layer)], &self.options())
     }

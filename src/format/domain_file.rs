@@ -6,8 +6,11 @@
 
 use super::airfoil::{self, FarField};
 use super::{domain_json, geojson, poly};
+use crate::curve::CurveError;
+use crate::curve::discretize::DiscretizeError;
 use crate::domain::{Domain, Place};
 use crate::point::Point2;
+use crate::surface::SurfaceError;
 use std::fmt;
 use std::path::Path;
 
@@ -179,6 +182,28 @@ pub enum Problem {
     /// An option of the reader makes no sense.
     #[error("{0}")]
     Option(&'static str),
+    /// Numbers that make no curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// A curve cannot be cut into edges as asked.
+    #[error(transparent)]
+    Nodes(#[from] DiscretizeError),
+    /// Numbers that make no surface.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// The curves of a loop do not meet.
+    #[error("the curve starts {gap:e} from where the one before it ends: {from:?} against {to:?}")]
+    Joint {
+        /// The distance.
+        gap: f64,
+        /// Where the curve before it ends.
+        from: [f64; 3],
+        /// Where the curve starts.
+        to: [f64; 3],
+    },
+    /// A name that the file does not define, or defines twice.
+    #[error("{0}")]
+    Name(String),
 }
 
 impl Problem {
@@ -194,6 +219,11 @@ impl Problem {
             Self::UnknownKey(_) | Self::Excluded(..) => "X6",
             Self::NotClosed { .. } => "X7",
             Self::Option(_) => "X8",
+            Self::Curve(_) => "S1",
+            Self::Nodes(_) => "S2",
+            Self::Surface(_) => "S3",
+            Self::Joint { .. } => "S5",
+            Self::Name(_) => "S7",
         }
     }
 

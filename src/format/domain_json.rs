@@ -5,7 +5,7 @@
 
 use super::domain_builder::{Builder, default_marker};
 use super::domain_file::{DomainReadError, Problem, excerpt, without_mark};
-use super::{domain_json_plain, geojson};
+use super::{curve_json, domain_json_plain, geojson};
 use crate::domain::{Domain, Inside, Loop, LoopRole, Place, Region};
 use crate::point::Point2;
 use serde_json::{Map, Value};
@@ -80,7 +80,7 @@ pub(super) struct Item<'a> {
     pub path: &'a Path<'a>,
 }
 
-type Read<T> = Result<T, DomainReadError>;
+pub(super) type Read<T> = Result<T, DomainReadError>;
 
 impl<'a> Item<'a> {
     pub fn place(self) -> Place {
@@ -91,7 +91,7 @@ impl<'a> Item<'a> {
         problem.at(self.place())
     }
 
-    fn expected(self, what: &'static str) -> DomainReadError {
+    pub fn expected(self, what: &'static str) -> DomainReadError {
         let found = match self.value {
             Value::Null => "null".to_owned(),
             Value::Bool(value) => value.to_string(),
@@ -107,7 +107,7 @@ impl<'a> Item<'a> {
         self.value.as_object().ok_or_else(|| self.expected(what))
     }
 
-    fn array(self, what: &'static str) -> Read<&'a Vec<Value>> {
+    pub fn array(self, what: &'static str) -> Read<&'a Vec<Value>> {
         self.value.as_array().ok_or_else(|| self.expected(what))
     }
 
@@ -125,7 +125,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    fn only_keys(self, known: &[&str]) -> Read<()> {
+    pub fn only_keys(self, known: &[&str]) -> Read<()> {
         match self.object("an object")?.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => Err(self.error(Problem::UnknownKey(excerpt(key)))),
             None => Ok(()),
@@ -152,7 +152,7 @@ impl<'a> Item<'a> {
         Ok(points)
     }
 
-    fn integer(self, what: &'static str, low: i64, high: i64) -> Read<i64> {
+    pub fn integer(self, what: &'static str, low: i64, high: i64) -> Read<i64> {
         let number = self.value.as_number().ok_or_else(|| self.expected(what))?;
         match number.as_i64() {
             Some(value) if (low..=high).contains(&value) => Ok(value),
@@ -168,7 +168,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    fn marker(self) -> Read<i32> {
+    pub fn marker(self) -> Read<i32> {
         self.integer("a marker", i32::MIN.into(), i32::MAX.into()).map(|marker| marker as i32)
     }
 }
@@ -251,7 +251,10 @@ fn read_vertex(
 }
 
 fn read_loop(item: Item, builder: &mut Builder) -> Read<()> {
-    item.only_keys(&["vertices", "marker", "markers", "role"])?;
+    item.only_keys(&["vertices", "curves", "marker", "markers", "role"])?;
+    if item.value.get("curves").is_some_and(|curves| !curves.is_null()) {
+        return read_curved_loop(item, builder);
+    }
     let mut vertices = Vec::new();
     let mut by_coordinates = false;
     item.key("vertices", |item| {
@@ -284,6 +287,30 @@ fn read_loop(item: Item, builder: &mut Builder) -> Read<()> {
         return Err(item.error(Problem::Excluded("'marker'", "'markers'")));
     }
     let role = item.key("role", read_role)?.unwrap_or(LoopRole::Any);
+    builder.add_loop(Loop { vertices, markers, role }, item.place());
+    Ok(())
+}
+
+/// A loop of curves, each cut into edges by its own rule.
+fn read_curved_loop(item: Item, builder: &mut Builder) -> Read<()> {
+    for (key, name) in [("vertices", "'vertices'"), ("markers", "'markers'")] {
+        if item.value.get(key).is_some_and(|value| !value.is_null()) {
+            return Err(item.error(Problem::Excluded(name, "'curves'")));
+        }
+    }
+    let default = default_marker(builder.domain.loops.len());
+    let default = item.key("marker", |item| item.marker())?.unwrap_or(default);
+    let role = item.key("role", read_role)?.unwrap_or(LoopRole::Any);
+    let (mut vertices, mut markers) = (Vec::new(), Vec::new());
+    item.key("curves", |item| {
+        for (points, marker, place) in curve_json::chain(item)? {
+            for [x, y, _] in points {
+                vertices.push(builder.loop_point(Point2::new(x, y), place.clone()));
+                markers.push(marker.unwrap_or(default));
+            }
+        }
+        Ok(())
+    })?;
     builder.add_loop(Loop { vertices, markers, role }, item.place());
     Ok(())
 }

@@ -276,7 +276,7 @@ mod tests {
     const NODE_DATA: &str =
         "$NodeData\n1\n\"h\"\n1\n0.0\n3\n0\n1\n4\n40 4\n10 1\n20 2.5\n30 3\n$EndNodeData\n";
 
-    // spec: X40
+    // spec: X49
     #[test]
     fn node_data_of_an_msh_file_goes_by_node_numbers() {
         let data = read_node_data(&msh(NODE_DATA), NodeDataForm::Msh).unwrap();
@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(data.unwrap().values[1], 2.5, "vectors are passed over");
     }
 
-    // spec: X40
+    // spec: X49
     #[test]
     fn nodes_without_a_value_have_nan() {
         let part = "$NodeData\n0\n0\n3\n0\n1\n1\n20 7\n$EndNodeData\n";
@@ -296,7 +296,7 @@ mod tests {
         assert!(data.values[0].is_nan() && data.values[3].is_nan());
     }
 
-    // spec: !X40
+    // spec: !X49
     #[test]
     fn msh_files_without_sound_data_are_refused() {
         for (data, word) in [
@@ -311,7 +311,7 @@ mod tests {
         }
     }
 
-    // spec: X40
+    // spec: X49
     #[test]
     fn parsed_views_have_scalar_triangles_and_quadrilaterals() {
         let text = "// sizes\nView \"h\" {\nSP(0,0,0){1};\n\
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(data.triangles, [[0, 1, 2], [3, 4, 5], [3, 5, 6]]);
     }
 
-    // spec: !X40
+    // spec: !X49
     #[test]
     fn broken_views_are_refused_with_their_line() {
         for (text, line) in [
@@ -342,7 +342,7 @@ mod tests {
         }
     }
 
-    // spec: X40
+    // spec: X49
     #[test]
     fn the_first_point_array_of_a_vtu_file_counts() {
         let text = "<VTKFile type=\"UnstructuredGrid\">\n<UnstructuredGrid>\n\

@@ -2,6 +2,7 @@
 //!
 //! Floats rank here; what is valid is decided by the cavity's exact predicates.
 
+use super::chart::{Chart, Site};
 use super::vertex::Vertices;
 use crate::point::Point2;
 use crate::triangulation::{Across, HalfEdgeId, Triangulation, VertexId};
@@ -17,10 +18,20 @@ pub enum Rules {
     Hard,
 }
 
+/// A point that might be inserted, in the coordinates of the base edge's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) point: Point2,
+    spacing: f64,
+    reach: f64,
+    depth: f64,
+    score: f64,
+}
+
 /// A point that might be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Trial {
-    pub(super) point: Point2,
+pub(super) struct Trial<L> {
+    pub(super) site: Site<L>,
     /// Spacing at the point: its clearances are measured in it.
     pub(super) spacing: f64,
     /// The scale of its surroundings: the spacing, but not less than what a side on a base edge much
@@ -28,18 +39,22 @@ pub(super) struct Trial {
     pub(super) reach: f64,
     /// Way from the boundary.
     pub(super) depth: f64,
-    score: f64,
 }
 
-impl Trial {
+impl<L> Trial<L> {
     /// A point on the boundary's own behalf, whatever its score.
-    pub(super) fn given(point: Point2, spacing: f64) -> Self {
-        Self { point, spacing, reach: spacing, depth: 0.0, score: 1.0 }
+    pub(super) fn given(site: Site<L>, spacing: f64) -> Self {
+        Self { site, spacing, reach: spacing, depth: 0.0 }
+    }
+
+    /// The candidate, once its place is known.
+    pub(super) fn placed(site: Site<L>, candidate: &Candidate) -> Self {
+        Self { site, spacing: candidate.spacing, reach: candidate.reach, depth: candidate.depth }
     }
 }
 
-/// At most three trials, best first.
-pub(super) type Trials = [Option<Trial>; 3];
+/// At most three candidates, best first.
+pub(super) type Candidates = [Option<Candidate>; 3];
 
 /// The base edge, its open triangle's apex, and the front edges next to it.
 #[derive(Clone, Copy, Debug)]
@@ -86,23 +101,30 @@ impl Corner {
 
 impl Neighbours {
     /// Looks around the base edge in the open region; costs a rotation about each end.
-    pub(super) fn around(open: &Triangulation, vertices: &Vertices, base: HalfEdgeId) -> Self {
+    pub(super) fn around<C: Chart>(
+        chart: &C,
+        frame: &C::Frame,
+        open: &Triangulation,
+        vertices: &Vertices<C::Lift>,
+        base: HalfEdgeId,
+    ) -> Self {
         let [a, b, c] = [open.origin(base), open.dest(base), open.apex(base)];
-        let [pa, pb, apex] = [a, b, c].map(|v| vertices.point(v));
-        let far = |v: VertexId| vertices.point(v);
+        let point = |v: VertexId| chart.local(frame, vertices.site(v));
+        let [pa, pb, apex] = [a, b, c].map(point);
+        let is_pole = |u: VertexId, v: VertexId| {
+            C::CURVED && chart.distance_sq(vertices.site(u), vertices.site(v)) == 0.0
+        };
         Self {
             a: pa,
             b: pb,
             apex,
             spacing: [a, b, c].map(|v| vertices.spacing(v)),
             depth: 0.5 * (vertices.depth(a) + vertices.depth(b)),
-            left: Corner::new(pa, pb, far(left_end(open, base)), true),
-            right: Corner::new(pb, pa, far(right_end(open, base)), false),
+            left: Corner::new(pa, pb, point(left_end(open, base, is_pole)), true),
+            right: Corner::new(pb, pa, point(right_end(open, base, is_pole)), false),
         }
     }
-}
 
-impl Neighbours {
     /// Mean of the spacings at the ends of the base edge: its length, freed of the accidents of
     /// placement. Had new spacings been taken from the length itself, they would drift.
     pub(super) fn mean_spacing(&self) -> f64 {
@@ -110,22 +132,41 @@ impl Neighbours {
     }
 }
 
-/// Origin of the front edge that ends where the base edge starts.
-fn left_end(open: &Triangulation, base: HalfEdgeId) -> VertexId {
+/// Origin of the front edge that ends where the base edge starts; the edge of a pole, which is a
+/// point in space, is passed over.
+fn left_end(
+    open: &Triangulation,
+    base: HalfEdgeId,
+    is_pole: impl Fn(VertexId, VertexId) -> bool,
+) -> VertexId {
     let mut e = base.prev();
-    while let Across::Twin(twin) = open.across(e) {
-        e = twin.prev();
+    loop {
+        while let Across::Twin(twin) = open.across(e) {
+            e = twin.prev();
+        }
+        if !is_pole(open.origin(e), open.dest(e)) {
+            return open.origin(e);
+        }
+        e = e.prev();
     }
-    open.origin(e)
 }
 
-/// Destination of the front edge that starts where the base edge ends.
-fn right_end(open: &Triangulation, base: HalfEdgeId) -> VertexId {
+/// Destination of the front edge that starts where the base edge ends, with the same exception.
+fn right_end(
+    open: &Triangulation,
+    base: HalfEdgeId,
+    is_pole: impl Fn(VertexId, VertexId) -> bool,
+) -> VertexId {
     let mut e = base.next();
-    while let Across::Twin(twin) = open.across(e) {
-        e = twin.next();
+    loop {
+        while let Across::Twin(twin) = open.across(e) {
+            e = twin.next();
+        }
+        if !is_pole(open.origin(e), open.dest(e)) {
+            return open.dest(e);
+        }
+        e = e.next();
     }
-    open.dest(e)
 }
 
 /// An inserted point must beat the existing apex by this factor.
@@ -151,7 +192,7 @@ pub(super) fn trials(
     rules: Rules,
     clamp: f64,
     mut field: impl FnMut(Point2) -> f64,
-) -> Trials {
+) -> Candidates {
     let placer = Placer { n, clamp, base: n.a.distance(n.b) };
     match rules {
         Rules::Scored => placer.scored(&mut field),
@@ -166,7 +207,7 @@ struct Placer<'a> {
 }
 
 impl Placer<'_> {
-    fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> [Option<Trial>; 3] {
+    fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
         let n = self.n;
         let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
         let bisect = |corner: &Corner, at: Point2, along: Point2| {
@@ -181,12 +222,12 @@ impl Placer<'_> {
                 *trial = None;
             }
         }
-        let score = |t: &Option<Trial>| t.map_or(f64::NEG_INFINITY, |t| t.score);
+        let score = |t: &Option<Candidate>| t.map_or(f64::NEG_INFINITY, |t| t.score);
         trials.sort_by(|t, u| score(u).total_cmp(&score(t)));
         trials
     }
 
-    fn hard(&self, field: &mut impl FnMut(Point2) -> f64) -> [Option<Trial>; 3] {
+    fn hard(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
         let n = self.n;
         let sharper_left = n.left.convex && (!n.right.convex || n.left.cosine >= n.right.cosine);
         let (corner, at, along) =
@@ -222,11 +263,15 @@ impl Placer<'_> {
         (point, spacing)
     }
 
-    fn trial(&self, point: Point2, spacing: f64) -> Trial {
+    fn trial(&self, point: Point2, spacing: f64) -> Candidate {
         let height = cross(self.n.a, self.n.b, point) / self.base;
-        let reach = spacing.max(COARSE_REACH * self.base);
-        let depth = self.n.depth + height;
-        Trial { point, spacing, reach, depth, score: self.score(point, spacing) }
+        Candidate {
+            point,
+            spacing,
+            reach: spacing.max(COARSE_REACH * self.base),
+            depth: self.n.depth + height,
+            score: self.score(point, spacing),
+        }
     }
 
     /// The wanted length between vertices of these spacings, in reach of the base edge.

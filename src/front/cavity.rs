@@ -3,9 +3,9 @@
 //! the new triangles (Bowyer 1981; Watson 1981).
 
 use super::candidate::Trial;
+use super::chart::Chart;
 use super::vertex::Vertices;
-use crate::point::Point2;
-use crate::predicates::{Sign, incircle_perturbed, orient2d};
+use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// Scratch space of the cavity; reused, so that the front allocates nothing per step.
@@ -55,20 +55,55 @@ const CLEARANCE_VERTEX: f64 = 0.66;
 const CLEARANCE_LENGTH_SQ: f64 = 0.3 * 0.3;
 const CLEARANCE_EDGE: [f64; 2] = [0.4, 0.8];
 
+/// A trial among the vertices it has to fit in with.
+pub(super) struct Probe<'a, C: Chart> {
+    chart: &'a C,
+    vertices: &'a Vertices<C::Lift>,
+    trial: &'a Trial<C::Lift>,
+    circle: C::Circle,
+    reach_sq: f64,
+}
+
+impl<'a, C: Chart> Probe<'a, C> {
+    pub(super) fn new(
+        chart: &'a C,
+        vertices: &'a Vertices<C::Lift>,
+        trial: &'a Trial<C::Lift>,
+    ) -> Self {
+        let circle = chart.circle(trial.site);
+        Self { chart, vertices, trial, circle, reach_sq: (REACH * trial.reach).powi(2) }
+    }
+
+    /// Whether the trial lies strictly left of an edge: exact.
+    fn is_left(&self, edge: RingEdge) -> bool {
+        let [a, b] = [edge.origin, edge.dest].map(|v| self.vertices.point(v));
+        orient2d(a, b, self.trial.site.at) == Sign::Positive
+    }
+
+    fn is_near(&self, edge: RingEdge) -> bool {
+        let [a, b] = [edge.origin, edge.dest].map(|v| self.vertices.site(v));
+        let p = self.trial.site;
+        self.chart.distance_sq(a, p) < self.reach_sq
+            || self.chart.segment_distance_sq([a, b], p) < self.reach_sq
+    }
+
+    fn in_circle(&self, corners: [VertexId; 3]) -> bool {
+        let corners = corners.map(|v| self.vertices.point(v));
+        self.chart.in_circle(&self.circle, corners, self.trial.site.at)
+    }
+}
+
 impl Cavity {
     /// Finds the cavity of `p` that contains the open triangle on `base`; `false` when that
     /// triangle does not belong to it or `p` does not see the whole outline from strictly inside.
-    pub(super) fn carve(
+    pub(super) fn carve<C: Chart>(
         &mut self,
         open: &mut Triangulation,
-        vertices: &Vertices,
+        probe: &Probe<'_, C>,
         base: HalfEdgeId,
-        trial: &Trial,
     ) -> bool {
-        let p = trial.point;
-        let reach_sq = (REACH * trial.reach).powi(2);
         self.begin();
-        if !self.absorb(open, vertices, base.triangle(), p) {
+        if !self.absorb(open, probe, base.triangle(), false) {
             return false;
         }
         self.stack.extend([base.prev(), base.next(), base]);
@@ -78,7 +113,7 @@ impl Cavity {
                 dest: open.dest(e),
                 across: if e == base { Across::Border(0) } else { open.across(e) },
             };
-            match self.cross(open, vertices, edge, p, reach_sq) {
+            match self.cross(open, probe, edge) {
                 Crossing::Absorbed(twin) => self.stack.extend([twin.prev(), twin.next()]),
                 Crossing::Outline => self.ring.push(edge),
                 Crossing::Unsound => return false,
@@ -89,30 +124,28 @@ impl Cavity {
 
     /// Whether the cavity goes on across an edge: it must where `p` lies beyond the edge, and may
     /// where the edge is near and the triangle behind it has `p` in its circumcircle.
-    fn cross(
+    fn cross<C: Chart>(
         &mut self,
         open: &mut Triangulation,
-        vertices: &Vertices,
+        probe: &Probe<'_, C>,
         edge: RingEdge,
-        p: Point2,
-        reach_sq: f64,
     ) -> Crossing {
-        let (a, b) = (vertices.point(edge.origin), vertices.point(edge.dest));
         if let Across::Twin(twin) = edge.across {
-            let is_near = a.distance_sq(p) < reach_sq || segment_distance_sq(a, b, p) < reach_sq;
-            if is_near || orient2d(a, b, p) != Sign::Positive {
+            // Circles on a surface are approximate: they may miss a triangle that must go.
+            let must = C::CURVED && !probe.is_left(edge);
+            if must || probe.is_near(edge) || !probe.is_left(edge) {
                 if open.mark(twin.triangle()) == self.epoch {
                     // The cavity closes around a vertex: it is no disk.
                     return Crossing::Unsound;
                 }
-                if self.absorb(open, vertices, twin.triangle(), p) {
+                if self.absorb(open, probe, twin.triangle(), must) {
                     return Crossing::Absorbed(twin);
                 }
             } else {
                 return Crossing::Outline;
             }
         }
-        if orient2d(a, b, p) == Sign::Positive { Crossing::Outline } else { Crossing::Unsound }
+        if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound }
     }
 
     fn begin(&mut self) {
@@ -124,15 +157,14 @@ impl Cavity {
         self.moved.clear();
     }
 
-    fn absorb(
+    fn absorb<C: Chart>(
         &mut self,
         open: &mut Triangulation,
-        vertices: &Vertices,
+        probe: &Probe<'_, C>,
         t: TriangleId,
-        p: Point2,
+        must: bool,
     ) -> bool {
-        let [a, b, c] = open.corners(t).map(|v| vertices.point(v));
-        let inside = incircle_perturbed(a, b, c, p) == Sign::Positive;
+        let inside = must || probe.in_circle(open.corners(t));
         if inside {
             open.set_mark(t, self.epoch);
             self.triangles.push(t);
@@ -143,21 +175,22 @@ impl Cavity {
     /// Whether the trial keeps its clearances from the outline. The nearest vertex that a point
     /// sees is its neighbour in the Delaunay triangulation, so it is on the outline. Float
     /// arithmetic: this ranks, `carve` has decided.
-    pub(super) fn is_clear(&self, vertices: &Vertices, trial: &Trial) -> bool {
+    pub(super) fn is_clear<C: Chart>(&self, probe: &Probe<'_, C>) -> bool {
+        let Probe { chart, vertices, trial, .. } = *probe;
         let vertex_sq = (CLEARANCE_VERTEX * trial.reach).powi(2);
-        let edge_sq = |a: Point2, b: Point2| {
+        let edge_sq = |length_sq: f64| {
             let h_sq = trial.reach.powi(2);
             let [low, high] = CLEARANCE_EDGE.map(|fraction| fraction * fraction * h_sq);
-            (CLEARANCE_LENGTH_SQ * a.distance_sq(b)).clamp(low, high)
+            (CLEARANCE_LENGTH_SQ * length_sq).clamp(low, high)
         };
         let ends = self.ring[0];
         self.ring[1..].iter().all(|edge| {
-            let origin = vertices.point(edge.origin);
+            let [origin, dest] = [edge.origin, edge.dest].map(|v| vertices.site(v));
             let is_end = edge.origin == ends.origin || edge.origin == ends.dest;
-            (is_end || origin.distance_sq(trial.point) >= vertex_sq)
+            (is_end || chart.distance_sq(origin, trial.site) >= vertex_sq)
                 && (matches!(edge.across, Across::Twin(_))
-                    || segment_distance_sq(origin, vertices.point(edge.dest), trial.point)
-                        >= edge_sq(origin, vertices.point(edge.dest)))
+                    || chart.segment_distance_sq([origin, dest], trial.site)
+                        >= edge_sq(chart.distance_sq(origin, dest)))
         })
     }
 
@@ -190,11 +223,4 @@ impl Cavity {
     pub(super) fn moved_borders(&self) -> &[(u32, HalfEdgeId)] {
         &self.moved
     }
-}
-
-fn segment_distance_sq(a: Point2, b: Point2, p: Point2) -> f64 {
-    let (ux, uy) = (b.x - a.x, b.y - a.y);
-    let (wx, wy) = (p.x - a.x, p.y - a.y);
-    let along = ((wx * ux + wy * uy) / (ux * ux + uy * uy)).clamp(0.0, 1.0);
-    Point2::new(a.x + along * ux, a.y + along * uy).distance_sq(p)
 }

@@ -1,11 +1,14 @@
 //! What the front knows of each vertex.
 
+use super::chart::Site;
 use crate::point::Point2;
 use crate::triangulation::VertexId;
 
-/// Vertices of the front: position, wanted spacing, and depth, the way from the boundary.
-pub(super) struct Vertices {
+/// Vertices of the front: position, what lies above it, wanted spacing, and depth, the way from the
+/// boundary.
+pub(super) struct Vertices<L> {
     points: Vec<Point2>,
+    lifts: Vec<L>,
     attributes: Vec<Attributes>,
 }
 
@@ -15,16 +18,21 @@ struct Attributes {
     depth: f64,
 }
 
-impl Vertices {
-    pub(super) fn new(points: Vec<Point2>, spacing: Vec<f64>) -> Self {
+impl<L: Copy> Vertices<L> {
+    pub(super) fn new(points: Vec<Point2>, lifts: Vec<L>, spacing: Vec<f64>) -> Self {
         assert_eq!(points.len(), spacing.len(), "one spacing per point");
+        assert_eq!(points.len(), lifts.len(), "one lift per point");
         let attributes =
             spacing.into_iter().map(|spacing| Attributes { spacing, depth: 0.0 }).collect();
-        Self { points, attributes }
+        Self { points, lifts, attributes }
     }
 
     pub(super) fn point(&self, v: VertexId) -> Point2 {
         self.points[v.index()]
+    }
+
+    pub(super) fn site(&self, v: VertexId) -> Site<L> {
+        Site { at: self.points[v.index()], lift: self.lifts[v.index()] }
     }
 
     pub(super) fn spacing(&self, v: VertexId) -> f64 {
@@ -35,13 +43,14 @@ impl Vertices {
         self.attributes[v.index()].depth
     }
 
-    pub(super) fn push(&mut self, point: Point2, spacing: f64, depth: f64) -> VertexId {
-        self.points.push(point);
+    pub(super) fn push(&mut self, site: Site<L>, spacing: f64, depth: f64) -> VertexId {
+        self.points.push(site.at);
+        self.lifts.push(site.lift);
         self.attributes.push(Attributes { spacing, depth });
         VertexId(self.points.len() as u32 - 1)
     }
 
-    pub(super) fn into_points_and_spacing(self) -> (Vec<Point2>, Vec<f64>) {
-        (self.points, self.attributes.iter().map(|a| a.spacing).collect())
+    pub(super) fn into_parts(self) -> (Vec<Point2>, Vec<L>, Vec<f64>) {
+        (self.points, self.lifts, self.attributes.iter().map(|a| a.spacing).collect())
     }
 }

@@ -1,0 +1,216 @@
+//! Tensor products of NURBS.
+
+use super::{Side, SurfaceError, SurfaceJet, Tangents};
+use crate::curve::basis::Basis;
+use crate::curve::{
+    Curve, CurveError, check_knots, check_points, clamped_knots, cuts, piece_knots,
+};
+use crate::vector::{Vector, along, scale, sub};
+
+/// A NURBS surface.
+///
+/// # Shapes and units
+/// `net: [rows * columns]` with the point (i, j) at `i * columns + j`: i counts along u, j along v.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tensor {
+    degrees: [usize; 2],
+    knots: [Vec<f64>; 2],
+    counts: [usize; 2],
+    net: Vec<Vector>,
+    weights: Vec<f64>,
+}
+
+/// Weighted sums for one order of derivatives in either direction.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    point: Vector,
+    weight: f64,
+}
+
+impl Sum {
+    #[inline]
+    fn add(&mut self, part: f64, other: &Self) {
+        self.point = along(self.point, part, other.point);
+        self.weight += part * other.weight;
+    }
+}
+
+impl Tensor {
+    /// A NURBS surface from the rows of its control net (a row has u constant); `weights` is empty
+    /// or has the same shape.
+    ///
+    /// # Errors
+    /// The first rule that the numbers break.
+    pub fn new(
+        degrees: [usize; 2],
+        knots: [Vec<f64>; 2],
+        rows: &[Vec<Vector>],
+        weights: &[Vec<f64>],
+    ) -> Result<Self, SurfaceError> {
+        let counts = [rows.len(), rows.first().map_or(0, Vec::len)];
+        let lengths = rows.iter().map(Vec::len).chain(weights.iter().map(Vec::len));
+        for (row, found) in lengths.enumerate() {
+            if found != counts[1] {
+                let row = row % rows.len().max(1);
+                return Err(SurfaceError::Net { row, found, expected: counts[1] });
+            }
+        }
+        for (i, direction) in ['u', 'v'].into_iter().enumerate() {
+            check_knots(degrees[i], &knots[i], counts[i])
+                .map_err(|error| SurfaceError::Spline { direction, error })?;
+        }
+        let (net, weights) = (rows.concat(), weights.concat());
+        check_points(&net, &weights)
+            .map_err(|error| SurfaceError::Spline { direction: 'u', error })?;
+        Ok(Self { degrees, knots, counts, net, weights })
+    }
+
+    /// The Bezier patch of a control net: degrees by the size of the net, parameters from 0 to 1.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn bezier(rows: &[Vec<Vector>]) -> Result<Self, SurfaceError> {
+        let degrees = [rows.len(), rows.first().map_or(0, Vec::len)].map(|n| n.saturating_sub(1));
+        Self::clamped(degrees, rows)
+    }
+
+    /// The B-spline surface of a control net with knots 0, 1, 2, ... that reaches its edges.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn clamped(degrees: [usize; 2], rows: &[Vec<Vector>]) -> Result<Self, SurfaceError> {
+        let counts = [rows.len(), rows.first().map_or(0, Vec::len)];
+        for i in 0..2 {
+            if degrees[i] >= counts[i] {
+                let error = CurveError::TooFewPoints { points: counts[i], degree: degrees[i] };
+                return Err(SurfaceError::Spline { direction: ['u', 'v'][i], error });
+            }
+        }
+        let knots = [0, 1].map(|i| clamped_knots(degrees[i], counts[i]));
+        Self::new(degrees, knots, rows, &[])
+    }
+
+    pub(super) fn domain(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|i| [self.knots[i][self.degrees[i]], self.knots[i][self.counts[i]]])
+    }
+
+    pub(super) fn at(&self, u: f64, v: f64) -> Vector {
+        self.sums::<1>(u, v)[0][0].point()
+    }
+
+    pub(super) fn tangents(&self, u: f64, v: f64) -> Tangents {
+        tangents(&self.sums::<2>(u, v))
+    }
+
+    pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
+        let sums = self.sums::<3>(u, v);
+        let first = tangents(&sums);
+        let Tangents { point, u: du, v: dv } = first;
+        let weight = sums[0][0].weight;
+        let (wu, wv) = (sums[1][0].weight, sums[0][1].weight);
+        // The quotient rule, once more.
+        let second = |sum: &Sum, terms: [(f64, Vector); 3]| {
+            let rest = terms.iter().fold(sum.point, |rest, (part, a)| along(rest, -part, *a));
+            scale(1.0 / weight, rest)
+        };
+        SurfaceJet {
+            tangents: first,
+            uu: second(&sums[2][0], [(2.0 * wu, du), (sums[2][0].weight, point), (0.0, du)]),
+            uv: second(&sums[1][1], [(wu, dv), (wv, du), (sums[1][1].weight, point)]),
+            vv: second(&sums[0][2], [(2.0 * wv, dv), (sums[0][2].weight, point), (0.0, dv)]),
+        }
+    }
+
+    /// Sums for each order of derivative below N by u and by v.
+    fn sums<const N: usize>(&self, u: f64, v: f64) -> [[Sum; N]; N] {
+        let [u, v] = [(u, 0), (v, 1)].map(|(t, i)| {
+            let (degree, count) = (self.degrees[i], self.counts[i]);
+            let t = t.clamp(self.knots[i][degree], self.knots[i][count]);
+            Basis::at(&self.knots[i], degree, count, t, N - 1)
+        });
+        let by = |basis: &Basis, r: usize| {
+            let all = [basis.value[r], basis.slope[r], basis.bend[r]];
+            std::array::from_fn::<f64, N, _>(|order| all[order])
+        };
+        let mut sums = [[Sum::default(); N]; N];
+        for r in 0..=self.degrees[0] {
+            let mut row = [Sum::default(); N];
+            let start = (u.first + r) * self.counts[1] + v.first;
+            for s in 0..=self.degrees[1] {
+                let weight = self.weights.get(start + s).copied().unwrap_or(1.0);
+                let point = scale(weight, self.net[start + s]);
+                for (sum, part) in row.iter_mut().zip(by(&v, s)) {
+                    sum.add(part, &Sum { point, weight });
+                }
+            }
+            for (i, part) in by(&u, r).into_iter().enumerate() {
+                for j in 0..N {
+                    sums[i][j].add(part, &row[j]);
+                }
+            }
+        }
+        sums
+    }
+
+    pub(super) fn side(&self, side: Side) -> Curve {
+        let [rows, columns] = self.counts;
+        let index = |k: usize| match side {
+            Side::South => k * columns,
+            Side::North => k * columns + columns - 1,
+            Side::West => k,
+            Side::East => (rows - 1) * columns + k,
+        };
+        let along_u = matches!(side, Side::South | Side::North);
+        let direction = usize::from(!along_u);
+        let count = self.counts[direction];
+        let points = (0..count).map(|k| self.net[index(k)]).collect();
+        let weights = match self.weights.is_empty() {
+            true => Vec::new(),
+            false => (0..count).map(|k| self.weights[index(k)]).collect(),
+        };
+        let knots = self.knots[direction].clone();
+        Curve::new(self.degrees[direction], knots, points, weights)
+            .expect("a side obeys the rules that the surface obeys")
+    }
+
+    /// The pieces between knots repeated as often as the degree.
+    pub(super) fn pieces(&self) -> Vec<Self> {
+        let cuts = [0, 1].map(|i| cuts(&self.knots[i], self.degrees[i], self.counts[i]));
+        let mut pieces = Vec::new();
+        for u in cuts[0].windows(2) {
+            for v in cuts[1].windows(2) {
+                pieces.push(self.piece([u[0], u[1]], [v[0], v[1]]));
+            }
+        }
+        pieces
+    }
+
+    fn piece(&self, rows: [usize; 2], columns: [usize; 2]) -> Self {
+        let indices = (rows[0]..=rows[1])
+            .flat_map(|i| (columns[0]..=columns[1]).map(move |j| i * self.counts[1] + j));
+        let net = indices.clone().map(|k| self.net[k]).collect();
+        let weights = indices.filter_map(|k| self.weights.get(k).copied()).collect();
+        Self {
+            degrees: self.degrees,
+            knots: [
+                piece_knots(&self.knots[0], self.degrees[0], rows[0], rows[1]),
+                piece_knots(&self.knots[1], self.degrees[1], columns[0], columns[1]),
+            ],
+            counts: [rows[1] - rows[0] + 1, columns[1] - columns[0] + 1],
+            net,
+            weights,
+        }
+    }
+}
+
+impl Sum {
+    fn point(&self) -> Vector {
+        if self.weight == 1.0 { self.point } else { scale(1.0 / self.weight, self.point) }
+    }
+}
+
+fn tangents<const N: usize>(sums: &[[Sum; N]; N]) -> Tangents {
+    let (point, weight) = (sums[0][0].point(), sums[0][0].weight);
+    let first = |sum: &Sum| scale(1.0 / weight, sub(sum.point, scale(sum.weight, point)));
+    Tangents { point, u: first(&sums[1][0]), v: first(&sums[0][1]) }
+}

@@ -1,0 +1,326 @@
+//! The pipeline for surfaces: a model in, a mesh in space out.
+//!
+//! ```text
+//! model -> curves -> per patch, in (u, v): background -> front -> improve -> lift, weld -> mesh
+//!          cut once                        CDT           lays     flips,     by index
+//! ```
+//!
+//! The front is the one of the plane: validity is exact in (u, v), lengths and shapes are those of
+//! space (SPEC 12).
+
+mod chart;
+mod flip;
+mod growth;
+mod lift;
+mod outline;
+mod patch;
+mod sizing;
+mod smooth;
+
+use crate::curve::discretize::DiscretizeError;
+use crate::front::{FrontError, FrontStats};
+use crate::mesh::MeshData;
+use crate::mesher::{Observer, Options, OptionsError, Stage};
+use crate::model::Model;
+use crate::size::Prediction;
+use crate::vector::{Vector, distance};
+use chart::{Sheet, SurfaceChart};
+use growth::{Source, SpaceField};
+use lift::Weld;
+use outline::{Node, Outline};
+use patch::Draft;
+use sizing::Curvature;
+
+/// Options of the surface mesher.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceOptions {
+    /// Those it has in common with the plane: growth, spacing, clamp, order, rules, limits, and the
+    /// sweeps of improvement. A spacing here overrides the model's.
+    pub common: Options,
+    /// Largest distance of a triangle from the surface.
+    pub chord_error: Option<f64>,
+    /// Largest turn of the normal along an edge, in degrees.
+    pub angle_per_edge_deg: Option<f64>,
+}
+
+/// A surface mesh and how it came about.
+#[derive(Clone, Debug)]
+pub struct SurfaceMeshed {
+    /// The mesh; regions are the patches' markers.
+    pub mesh: MeshData,
+    /// Triangles predicted before meshing.
+    pub prediction: Prediction,
+    /// Smooth patches.
+    pub patches: usize,
+    /// Curves between and around them.
+    pub curves: usize,
+    /// What the fronts did.
+    pub front: FrontStats,
+    /// Flips and moves of the improvement.
+    pub improved: [u64; 2],
+}
+
+/// Why there is no surface mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurfaceMeshError {
+    /// A model without patches.
+    #[error("the model has no patch")]
+    Empty,
+    /// A curve cannot be cut into edges.
+    #[error("{name}: {error}")]
+    Curve {
+        /// The curve.
+        name: String,
+        /// Why not.
+        error: DiscretizeError,
+    },
+    /// The outline of a patch in (u, v) has no triangulation.
+    #[error("patch {name} has no outline in (u, v): {reason}")]
+    Outline {
+        /// The patch.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A patch is all poles.
+    #[error("patch {name} is a point or a line: two neighbouring sides of it are poles")]
+    Flat {
+        /// The patch.
+        name: String,
+    },
+    /// The edges are too long to tell the two sides of a seam apart.
+    #[error(
+        "patch {name}: an edge joins a vertex with itself across a seam near {at:?}; take a smaller --spacing"
+    )]
+    Coarse {
+        /// The patch.
+        name: String,
+        /// Where.
+        at: Vector,
+    },
+    /// The prediction is above the limit.
+    #[error(
+        "the spacings ask for {}{predicted:.0} triangles, above the limit of {limit}: raise --max-triangles, or take a larger --spacing",
+        if *.stopped { "more than " } else { "about " }
+    )]
+    TooMany {
+        /// Predicted number of triangles.
+        predicted: f64,
+        /// Whether the prediction is only a lower bound.
+        stopped: bool,
+        /// The limit.
+        limit: usize,
+    },
+    /// A front gave up.
+    #[error(transparent)]
+    Front(#[from] FrontError),
+    /// Options that make no sense.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+}
+
+impl SurfaceOptions {
+    /// Whether every number is in its range.
+    ///
+    /// # Errors
+    /// The first option out of range.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        self.common.check()?;
+        let demand = |name, value: Option<f64>, high: f64, rule| match value {
+            Some(value) if !(value > 0.0 && value <= high) => {
+                Err(OptionsError { name, value, rule })
+            }
+            _ => Ok(()),
+        };
+        demand("chord-error", self.chord_error, f64::MAX, "positive and finite")?;
+        demand("angle-per-edge", self.angle_per_edge_deg, 120.0, "above 0 and at most 120")
+    }
+}
+
+/// Curves without a rule get edges of this fraction of the model's diagonal when no spacing is given.
+const DEFAULT_SPACING: f64 = 1.0 / 20.0;
+/// The same when the curvature decides: only a bound.
+const DEFAULT_SPACING_CURVED: f64 = 1.0 / 8.0;
+/// No spacing by curvature is below this fraction of the model's diagonal.
+const CURVATURE_FLOOR: f64 = 1e-4;
+/// Samples of the curvature in each direction of a patch.
+const CURVATURE_SAMPLES: u32 = 40;
+
+/// Meshes a model. Nothing about the result needs to be believed: [`check`](crate::check) can be
+/// asked.
+///
+/// # Errors
+/// [`SurfaceMeshError`].
+///
+/// # Complexity
+/// Linear in triangles, `n log n` in boundary nodes and samples of the curvature.
+pub fn mesh_model(
+    model: &Model,
+    options: &SurfaceOptions,
+    observer: &mut dyn Observer,
+) -> Result<SurfaceMeshed, SurfaceMeshError> {
+    options.check()?;
+    observer.stage(Stage::Background);
+    let plan = Plan::new(model, options)?;
+    let nodes = plan.nodes(model)?;
+    let drafts = plan.drafts(model, &nodes)?;
+
+    observer.stage(Stage::Size);
+    let limit = options.common.triangles_max;
+    let predictions = predict_all(&drafts, limit)?;
+    let triangles = predictions.iter().sum();
+    let prediction = Prediction { triangles, stopped: false };
+    if !observer.predicted(prediction) {
+        return Err(FrontError::Stopped.into());
+    }
+
+    observer.stage(Stage::Front);
+    let mut weld = Weld::new(&plan.outline);
+    let mut meshed = SurfaceMeshed {
+        mesh: MeshData::default(),
+        prediction,
+        patches: plan.outline.pieces.len(),
+        curves: plan.outline.curves.iter().filter(|shared| shared.uses > 0).count(),
+        front: FrontStats::default(),
+        improved: [0; 2],
+    };
+    for (i, (draft, predicted)) in drafts.into_iter().zip(predictions).enumerate() {
+        let done = weld.mesh.triangles.len();
+        // A triangle mesh has half as many vertices as triangles; the backstop is three times that.
+        let vertices_max = (1.5 * predicted) as usize + 1000;
+        let patch =
+            draft.mesh(&options.common, vertices_max, &mut |n| observer.progress(done + n))?;
+        let piece = &plan.outline.pieces[i];
+        meshed.front.accepted_existing += patch.stats.accepted_existing;
+        meshed.front.inserted += patch.stats.inserted;
+        meshed.front.rejected += patch.stats.rejected;
+        meshed.improved[0] += patch.flips;
+        meshed.improved[1] += patch.moves;
+        let of = &model.patches[piece.patch];
+        weld.add(i as u32, (of.marker, &of.name), &nodes[i], &patch)?;
+    }
+    observer.stage(Stage::Collect);
+    meshed.mesh = weld.finish(model, &plan.outline);
+    Ok(meshed)
+}
+
+/// Predicted triangles of each patch.
+fn predict_all(drafts: &[Draft<'_>], limit: usize) -> Result<Vec<f64>, SurfaceMeshError> {
+    let mut sum = 0.0;
+    let mut all = Vec::new();
+    for draft in drafts {
+        let Prediction { triangles, stopped } = draft.predict(limit as f64);
+        sum += triangles;
+        if sum > limit as f64 {
+            return Err(SurfaceMeshError::TooMany { predicted: sum, stopped, limit });
+        }
+        all.push(triangles);
+    }
+    Ok(all)
+}
+
+/// Everything that is known before the first triangle.
+struct Plan {
+    outline: Outline,
+    field: SpaceField,
+    curvature: Curvature,
+}
+
+impl Plan {
+    fn new(model: &Model, options: &SurfaceOptions) -> Result<Self, SurfaceMeshError> {
+        let mut outline = Outline::new(model)?;
+        if outline.pieces.is_empty() {
+            return Err(SurfaceMeshError::Empty);
+        }
+        let diagonal = model.diagonal();
+        let curvature = Curvature {
+            chord_error: options.chord_error,
+            angle: options.angle_per_edge_deg.map(f64::to_radians),
+            floor: CURVATURE_FLOOR * diagonal,
+        };
+        let given = options.common.spacing.or(model.spacing);
+        let fraction = if curvature.is_on() { DEFAULT_SPACING_CURVED } else { DEFAULT_SPACING };
+        let spacing = given.unwrap_or(fraction * diagonal);
+        let cap = if given.is_some() || outline.needs_default() { spacing } else { f64::INFINITY };
+        let growth = options.common.growth;
+        let mut sources = Vec::new();
+        if curvature.is_on() {
+            sources = samples(&outline, &curvature);
+            let field = SpaceField::new(&sources, growth, spacing);
+            outline.cut(|jet| curvature.along(jet).min(field.at(jet.point)))?;
+        } else {
+            outline.cut(|_| spacing)?;
+        }
+        outline.number();
+        sources.extend(node_sources(&outline));
+        let field = SpaceField::new(&sources, growth, cap);
+        Ok(Self { outline, field, curvature })
+    }
+
+    fn nodes(&self, model: &Model) -> Result<Vec<Vec<Node>>, SurfaceMeshError> {
+        let around = |piece: &outline::Piece| {
+            let nodes = self.outline.around(piece);
+            let name = &model.patches[piece.patch].name;
+            match nodes.iter().any(|node| node.vertex == u32::MAX) {
+                true => Err(SurfaceMeshError::Flat { name: name.clone() }),
+                false => Ok(nodes),
+            }
+        };
+        self.outline.pieces.iter().map(around).collect()
+    }
+
+    fn chart(&self, piece: usize) -> SurfaceChart<'_> {
+        SurfaceChart {
+            sheet: Sheet::new(&self.outline.pieces[piece].surface),
+            field: &self.field,
+            curvature: self.curvature,
+        }
+    }
+
+    fn drafts(
+        &self,
+        model: &Model,
+        nodes: &[Vec<Node>],
+    ) -> Result<Vec<Draft<'_>>, SurfaceMeshError> {
+        let draft = |(i, nodes): (usize, &Vec<Node>)| {
+            let name = &model.patches[self.outline.pieces[i].patch].name;
+            Draft::new(self.chart(i), nodes, &self.outline.points, name)
+        };
+        nodes.iter().enumerate().map(draft).collect()
+    }
+}
+
+/// The spacings that the curvature wants all over the patches.
+fn samples(outline: &Outline, curvature: &Curvature) -> Vec<Source> {
+    let mut sources = Vec::new();
+    for piece in &outline.pieces {
+        let [[u0, u1], [v0, v1]] = piece.surface.domain();
+        let step = |i: u32| f64::from(i) / f64::from(CURVATURE_SAMPLES);
+        for k in 0..(CURVATURE_SAMPLES + 1).pow(2) {
+            let (i, j) = (k % (CURVATURE_SAMPLES + 1), k / (CURVATURE_SAMPLES + 1));
+            let jet = piece.surface.jet(u0 + step(i) * (u1 - u0), v0 + step(j) * (v1 - v0));
+            let spacing = curvature.spacing(&jet);
+            if spacing.is_finite() {
+                sources.push(Source { at: jet.tangents.point, spacing });
+            }
+        }
+    }
+    sources
+}
+
+/// The spacing at each node: the mean length of the edges at it.
+fn node_sources(outline: &Outline) -> Vec<Source> {
+    let mut sums = vec![(0.0, 0_u32); outline.points.len()];
+    for shared in outline.curves.iter().filter(|shared| shared.uses > 0) {
+        for pair in shared.vertices.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|v| v as usize);
+            let length = distance(outline.points[a], outline.points[b]);
+            for v in [a, b] {
+                sums[v].0 += length;
+                sums[v].1 += 1;
+            }
+        }
+    }
+    let nodes = outline.points.iter().zip(sums).filter(|(_, (_, count))| *count > 0);
+    nodes.map(|(&at, (sum, count))| Source { at, spacing: sum / f64::from(count) }).collect()
+}

@@ -1,0 +1,99 @@
+//! Flips on a surface: exact in (u, v), ranked in space.
+
+use super::chart::{Lift, Matrix2};
+use crate::metric::FirstForm;
+use crate::point::Point2;
+use crate::predicates::{Sign, orient2d};
+use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation};
+use crate::vector::{add, cross, dot, norm_sq, sub};
+
+/// Makes an open region nearly Delaunay in the metric of the surface: an edge is flipped when the
+/// circle of one triangle, as the metric in its middle sees it, holds the other apex.
+///
+/// The metric differs from edge to edge, so the flips might go round for ever; their number is
+/// bounded.
+pub(super) fn towards_circles(mesh: &mut Triangulation, points: &[Point2], lifts: &[Lift]) {
+    let mut budget = 16 * mesh.slot_count();
+    let mut suspects = all_edges(mesh);
+    while let Some(e) = suspects.pop() {
+        let Some(quad) = Quad::of(mesh, points, e) else { continue };
+        let [a, b] = [quad.vertices[0], quad.vertices[1]].map(|v| lifts[v].form);
+        let mean = FirstForm { e: a.e + b.e, f: a.f + b.f, g: a.g + b.g };
+        let circle = Matrix2::root(&mean);
+        let [a, b, c, d] = quad.points;
+        if budget > 0 && circle.in_circle([a, b, c], d) {
+            budget -= 1;
+            flip(mesh, e, &mut suspects);
+        }
+    }
+}
+
+/// Flips an edge when that makes the worse of its two triangles better in space, until no flip does;
+/// returns the number of flips.
+///
+/// Ends: each flip raises the list of all shapes, sorted upwards, in lexicographic order.
+pub(super) fn towards_shape(mesh: &mut Triangulation, points: &[Point2], lifts: &[Lift]) -> u64 {
+    let mut suspects = all_edges(mesh);
+    let mut flips = 0;
+    while let Some(e) = suspects.pop() {
+        let Some(quad) = Quad::of(mesh, points, e) else { continue };
+        let [a, b, c, d] = quad.vertices.map(|v| lifts[v].point);
+        let up = add(cross(sub(b, a), sub(c, a)), cross(sub(a, b), sub(d, b)));
+        let now = shape([a, b, c], up).min(shape([b, a, d], up));
+        let then = shape([a, d, c], up).min(shape([d, b, c], up));
+        // Shapes are rounded: an equal one must not pass for a better one.
+        if then > now + 1e-12 {
+            flips += 1;
+            flip(mesh, e, &mut suspects);
+        }
+    }
+    flips
+}
+
+fn all_edges(mesh: &Triangulation) -> Vec<HalfEdgeId> {
+    let sides = mesh.triangles().flat_map(TriangleId::half_edges);
+    let mut edges: Vec<HalfEdgeId> =
+        sides.filter(|&e| mesh.twin(e).is_some_and(|f| e < f)).collect();
+    edges.reverse();
+    edges
+}
+
+fn flip(mesh: &mut Triangulation, e: HalfEdgeId, suspects: &mut Vec<HalfEdgeId>) {
+    let twin = mesh.twin(e).expect("only edges with two sides are flipped");
+    suspects.extend([e.next(), e.prev(), twin.next(), twin.prev()]);
+    mesh.flip(e);
+}
+
+/// The quadrilateral around an edge a -> b: apexes c on the left and d on the right.
+struct Quad {
+    vertices: [usize; 4],
+    points: [Point2; 4],
+}
+
+impl Quad {
+    /// `None` when the edge cannot be flipped: a border, or not strictly convex in (u, v), exactly.
+    fn of(mesh: &Triangulation, points: &[Point2], e: HalfEdgeId) -> Option<Self> {
+        if mesh.is_constrained(e) {
+            return None;
+        }
+        let twin = mesh.twin(e)?;
+        let vertices = [mesh.origin(e), mesh.dest(e), mesh.apex(e), mesh.apex(twin)];
+        let vertices = vertices.map(|v| v.index());
+        let [a, b, c, d] = vertices.map(|v| points[v]);
+        let is_convex = orient2d(a, d, c) == Sign::Positive && orient2d(d, b, c) == Sign::Positive;
+        is_convex.then_some(Self { vertices, points: [a, b, c, d] })
+    }
+}
+
+/// Mean ratio in space: 1 when equilateral, negative when the triangle faces away from `up`. A
+/// triangle at a pole is an edge in space, and no concern.
+pub(super) fn shape([a, b, c]: [[f64; 3]; 3], up: [f64; 3]) -> f64 {
+    const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
+    if a == b || b == c || c == a {
+        return f64::INFINITY;
+    }
+    let normal = cross(sub(b, a), sub(c, a));
+    let sides = norm_sq(sub(b, a)) + norm_sq(sub(c, b)) + norm_sq(sub(a, c));
+    let ratio = TWO_SQRT_3 * norm_sq(normal).sqrt() / sides;
+    if dot(normal, up) > 0.0 { ratio } else { -ratio }
+}

@@ -1,0 +1,298 @@
+//! The curves of a model: each is cut into edges once, for all patches that share it, so that the
+//! mesh is watertight by construction.
+
+use super::SurfaceMeshError;
+use crate::curve::Curve;
+use crate::curve::discretize::{self, nodes};
+use crate::model::Model;
+use crate::surface::{Side, Surface};
+use crate::vector::{Vector, key};
+use std::collections::BTreeMap;
+
+/// A smooth curve of the model, which may be the side of any number of patches.
+#[derive(Clone, Debug)]
+pub(super) struct Shared {
+    pub(super) curve: Curve,
+    /// As messages call it.
+    pub(super) name: String,
+    /// Parameters of its nodes.
+    pub(super) nodes: Vec<f64>,
+    /// Vertices of the model at the nodes.
+    pub(super) vertices: Vec<u32>,
+    pub(super) marker: Option<i32>,
+    /// How many sides it is.
+    pub(super) uses: u32,
+}
+
+/// A smooth patch and the curves around it.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// Index of the model's patch it is part of.
+    pub(super) patch: usize,
+    pub(super) surface: Surface,
+    /// By [`Side::ALL`]: the curves along each, in the direction of the rising parameter; none for a
+    /// pole.
+    pub(super) sides: [Vec<Along>; 4],
+}
+
+/// A shared curve as a part of a side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Along {
+    pub(super) curve: usize,
+    /// Whether the side runs against the curve.
+    pub(super) reversed: bool,
+    /// Parameters of the side where it starts and ends.
+    range: [f64; 2],
+}
+
+/// A node of the outline of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    pub(super) u: f64,
+    pub(super) v: f64,
+    pub(super) vertex: u32,
+}
+
+/// All curves and pieces of a model, and the points of the nodes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outline {
+    pub(super) curves: Vec<Shared>,
+    pub(super) pieces: Vec<Piece>,
+    pub(super) points: Vec<Vector>,
+    by_ends: BTreeMap<[[u64; 3]; 2], Vec<usize>>,
+}
+
+impl Outline {
+    /// Finds the curves that patches share; none has nodes yet, but for those with a rule.
+    pub(super) fn new(model: &Model) -> Result<Self, SurfaceMeshError> {
+        let mut outline = Self::default();
+        for named in &model.curves {
+            let failed = |error| SurfaceMeshError::Curve { name: named.name.clone(), error };
+            let all = named.rule.map(|rule| nodes(&named.curve, rule)).transpose();
+            let all = all.map_err(failed)?.unwrap_or_default();
+            for piece in named.curve.pieces().into_iter().filter(|piece| !piece.is_point()) {
+                let [start, end] = piece.domain();
+                let inside = |t: &f64| *t >= start && *t <= end;
+                let nodes = all.iter().copied().filter(inside).collect();
+                let (i, _) = outline.find_or_add(piece, &named.name);
+                outline.curves[i].nodes = nodes;
+                outline.curves[i].marker = named.marker;
+            }
+        }
+        for (index, patch) in model.patches.iter().enumerate() {
+            for surface in patch.surface.pieces() {
+                let sides =
+                    Side::ALL.map(|side| outline.along(&surface.side(side), &patch.name, side));
+                outline.pieces.push(Piece { patch: index, surface, sides });
+            }
+        }
+        Ok(outline)
+    }
+
+    fn along(&mut self, side: &Curve, patch: &str, which: Side) -> Vec<Along> {
+        if side.is_point() {
+            return Vec::new();
+        }
+        let name = format!("the {} side of patch {patch}", which.name());
+        let pieces = side.pieces().into_iter();
+        pieces
+            .map(|piece| {
+                let range = piece.domain();
+                let (curve, reversed) = self.find_or_add(piece, &name);
+                self.curves[curve].uses += 1;
+                Along { curve, reversed, range }
+            })
+            .collect()
+    }
+
+    /// The curve that equals this one, and whether it runs the other way.
+    fn find_or_add(&mut self, curve: Curve, name: &str) -> (usize, bool) {
+        let mut ends = curve.ends().map(key);
+        ends.sort_unstable();
+        let known = self.by_ends.entry(ends).or_default();
+        for &i in known.iter() {
+            if let Some(reversed) = self.curves[i].curve.same_as(&curve) {
+                return (i, reversed);
+            }
+        }
+        known.push(self.curves.len());
+        self.curves.push(Shared {
+            curve,
+            name: name.to_owned(),
+            nodes: Vec::new(),
+            vertices: Vec::new(),
+            marker: None,
+            uses: 0,
+        });
+        (self.curves.len() - 1, false)
+    }
+
+    /// Whether some curve that a patch uses has no rule.
+    pub(super) fn needs_default(&self) -> bool {
+        self.curves.iter().any(|shared| shared.uses > 0 && shared.nodes.is_empty())
+    }
+
+    /// Gives nodes to the curves that have none yet, by the spacing at a point of them.
+    pub(super) fn cut(
+        &mut self,
+        spacing: impl Fn(&crate::curve::CurveJet) -> f64,
+    ) -> Result<(), SurfaceMeshError> {
+        for shared in self.curves.iter_mut().filter(|s| s.uses > 0 && s.nodes.is_empty()) {
+            shared.nodes = discretize::by_spacing(&shared.curve, |jet, _| spacing(jet))
+                .map_err(|error| SurfaceMeshError::Curve { name: shared.name.clone(), error })?;
+        }
+        Ok(())
+    }
+
+    /// Numbers the nodes: ends at equal places are one vertex.
+    pub(super) fn number(&mut self) {
+        let mut at_end: BTreeMap<[u64; 3], u32> = BTreeMap::new();
+        let points = &mut self.points;
+        for shared in self.curves.iter_mut().filter(|shared| shared.uses > 0) {
+            let last = shared.nodes.len() - 1;
+            let vertex = |(i, &t): (usize, &f64)| {
+                let point = shared.curve.at(t);
+                let mut new = || {
+                    points.push(point);
+                    points.len() as u32 - 1
+                };
+                let is_end = i == 0 || i == last;
+                if is_end { *at_end.entry(key(point)).or_insert_with(new) } else { new() }
+            };
+            shared.vertices = shared.nodes.iter().enumerate().map(vertex).collect();
+        }
+        self.join_corners();
+    }
+
+    /// Makes one vertex of the ends of curves that meet in a corner of a patch within a tolerance.
+    fn join_corners(&mut self) {
+        let mut same: Vec<u32> = (0..self.points.len() as u32).collect();
+        for piece in &self.pieces {
+            let ends: Vec<[u32; 2]> =
+                Side::ALL.iter().filter_map(|&side| self.ends_ccw(piece, side)).collect();
+            for (i, &[_, last]) in ends.iter().enumerate() {
+                let [first, _] = ends[(i + 1) % ends.len()];
+                let (a, b) = (root(&same, last), root(&same, first));
+                same[a.max(b) as usize] = a.min(b);
+            }
+        }
+        for vertex in self.curves.iter_mut().flat_map(|shared| &mut shared.vertices) {
+            *vertex = root(&same, *vertex);
+        }
+    }
+
+    /// First and last vertex of a side, counterclockwise; `None` for a pole.
+    fn ends_ccw(&self, piece: &Piece, side: Side) -> Option<[u32; 2]> {
+        let along = &piece.sides[side as usize];
+        let end = |along: &Along, at_start: bool| {
+            let vertices = &self.curves[along.curve].vertices;
+            if at_start != along.reversed { vertices[0] } else { vertices[vertices.len() - 1] }
+        };
+        let (first, last) = (end(along.first()?, true), end(along.last()?, false));
+        Some(if is_forward(side) { [first, last] } else { [last, first] })
+    }
+
+    /// The nodes around a piece, counterclockwise; a pole has but its two corners.
+    pub(super) fn around(&self, piece: &Piece) -> Vec<Node> {
+        let mut nodes: Vec<Node> = Vec::new();
+        for side in Side::ALL {
+            let mut list = self.on_side(piece, side);
+            if !is_forward(side) {
+                list.reverse();
+            }
+            match list.pop() {
+                Some(_) => nodes.extend(list),
+                None => nodes.push(self.pole(piece, side)),
+            }
+        }
+        nodes
+    }
+
+    /// The first corner, counterclockwise, of a side that is a pole.
+    fn pole(&self, piece: &Piece, side: Side) -> Node {
+        let before = Side::ALL[(side as usize + 3) % 4];
+        let [u, v] = corner(&piece.surface, side);
+        let vertex = match self.ends_ccw(piece, before) {
+            Some([_, last]) => last,
+            None => u32::MAX,
+        };
+        Node { u, v, vertex }
+    }
+
+    /// The nodes of a side in the direction of the rising parameter, both corners included.
+    fn on_side(&self, piece: &Piece, side: Side) -> Vec<Node> {
+        let mut list = Vec::new();
+        let curve = piece.surface.side(side);
+        for (k, along) in piece.sides[side as usize].iter().enumerate() {
+            let shared = &self.curves[along.curve];
+            let count = shared.nodes.len();
+            let order = |i: usize| if along.reversed { count - 1 - i } else { i };
+            for i in usize::from(k > 0)..count {
+                let fraction = along.fraction(shared, order(i), curve.domain());
+                let vertex = shared.vertices[order(i)];
+                list.push(node(piece, side, fraction, self.points[vertex as usize], vertex));
+            }
+        }
+        if let [first, .., last] = &mut list[..] {
+            let [low, high] = ends_of(&piece.surface, side);
+            [first.u, first.v] = low;
+            [last.u, last.v] = high;
+        }
+        list
+    }
+}
+
+fn root(same: &[u32], mut v: u32) -> u32 {
+    while same[v as usize] != v {
+        v = same[v as usize];
+    }
+    v
+}
+
+impl Along {
+    /// Where node `i` of the curve lies on the side, as a fraction of the side's parameters.
+    fn fraction(&self, shared: &Shared, i: usize, [start, end]: [f64; 2]) -> f64 {
+        let [low, high] = shared.curve.domain();
+        let part = (shared.nodes[i] - low) / (high - low);
+        let part = if self.reversed { 1.0 - part } else { part };
+        let t = self.range[0] + part * (self.range[1] - self.range[0]);
+        (t - start) / (end - start)
+    }
+}
+
+/// Whether the rising parameter runs counterclockwise around the patch.
+pub(super) fn is_forward(side: Side) -> bool {
+    matches!(side, Side::South | Side::East)
+}
+
+/// Parameters of a side's corners, in the direction of the rising parameter.
+fn ends_of(surface: &Surface, side: Side) -> [[f64; 2]; 2] {
+    let [[u0, u1], [v0, v1]] = surface.domain();
+    match side {
+        Side::South => [[u0, v0], [u1, v0]],
+        Side::East => [[u1, v0], [u1, v1]],
+        Side::North => [[u0, v1], [u1, v1]],
+        Side::West => [[u0, v0], [u0, v1]],
+    }
+}
+
+/// Parameters of a side's first corner, counterclockwise.
+fn corner(surface: &Surface, side: Side) -> [f64; 2] {
+    let [low, high] = ends_of(surface, side);
+    if is_forward(side) { low } else { high }
+}
+
+fn node(piece: &Piece, side: Side, fraction: f64, point: Vector, vertex: u32) -> Node {
+    let [[u0, u1], [v0, v1]] = piece.surface.domain();
+    let mix = |low: f64, high: f64| low + fraction * (high - low);
+    let (u, v) = match (side, &piece.surface) {
+        // A rational arc does not run at constant angular speed: its points know their angles.
+        (Side::East, Surface::Revolution(of)) => (u1, of.angle_of(point)),
+        (Side::West, Surface::Revolution(of)) => (u0, of.angle_of(point)),
+        (Side::South, _) => (mix(u0, u1), v0),
+        (Side::North, _) => (mix(u0, u1), v1),
+        (Side::East, _) => (u1, mix(v0, v1)),
+        (Side::West, _) => (u0, mix(v0, v1)),
+    };
+    Node { u, v, vertex }
+}

@@ -1,0 +1,179 @@
+//! Smoothing on a surface: the energy of SPEC 8, the sum of squared inverse mean ratios, is
+//! minimised in the tangent plane; the step is taken in (u, v), where validity is exact, and judged
+//! by the triangles in space.
+
+use super::chart::{Lift, SurfaceChart, lift};
+use crate::point::Point2;
+use crate::predicates::{Sign, orient2d};
+use crate::triangulation::{HalfEdgeId, Triangulation};
+use crate::vector::{Vector, cross, dot, norm_sq, sub, unit};
+
+/// Scratch space, and which vertices are worth another look.
+pub(super) struct Smoother<'a> {
+    chart: &'a SurfaceChart<'a>,
+    /// Vertices below this index never move.
+    fixed: usize,
+    active: Vec<bool>,
+    link: Vec<(Point2, Vector)>,
+    link_vertices: Vec<usize>,
+    flat: Vec<Point2>,
+}
+
+/// Newton's step, then halves of it.
+const TRIES: u32 = 3;
+/// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
+const STEP_MIN: f64 = 2e-3;
+
+impl<'a> Smoother<'a> {
+    pub(super) fn new(chart: &'a SurfaceChart<'a>, fixed: usize) -> Self {
+        let (link, link_vertices, flat) = (Vec::new(), Vec::new(), Vec::new());
+        Self { chart, fixed, active: Vec::new(), link, link_vertices, flat }
+    }
+
+    /// One sweep over the active vertices in index order; returns the number of moves.
+    pub(super) fn sweep(
+        &mut self,
+        mesh: &Triangulation,
+        points: &mut [Point2],
+        lifts: &mut [Lift],
+    ) -> u64 {
+        let outgoing = mesh.outgoing(points.len());
+        self.active.resize(points.len(), true);
+        let mut moves = 0;
+        for v in self.fixed..points.len() {
+            if !std::mem::take(&mut self.active[v]) {
+                continue;
+            }
+            let Some(start) = outgoing[v] else { continue };
+            if !self.gather(mesh, start, points, lifts) {
+                continue;
+            }
+            if let Some((place, above)) = self.better_place(points[v], &lifts[v]) {
+                points[v] = place;
+                lifts[v] = above;
+                moves += 1;
+                self.active[v] = true;
+                for &u in &self.link_vertices {
+                    self.active[u] = true;
+                }
+            }
+        }
+        moves
+    }
+
+    /// Fills the polygon around the origin of `start`; `false` on the border.
+    fn gather(
+        &mut self,
+        mesh: &Triangulation,
+        start: HalfEdgeId,
+        points: &[Point2],
+        lifts: &[Lift],
+    ) -> bool {
+        self.link.clear();
+        self.link_vertices.clear();
+        let mut e = start;
+        loop {
+            let u = mesh.dest(e).index();
+            self.link_vertices.push(u);
+            self.link.push((points[u], lifts[u].point));
+            match mesh.rotate_ccw(e) {
+                None => return false,
+                Some(next) if next == start => return true,
+                Some(next) => e = next,
+            }
+        }
+    }
+
+    /// A place that is better in space and valid in (u, v), if a step finds one.
+    fn better_place(&mut self, v: Point2, above: &Lift) -> Option<(Point2, Lift)> {
+        let tangents = self.chart.sheet.tangents(v);
+        let normal = unit(cross(tangents.u, tangents.v))?;
+        let x = unit(tangents.u)?;
+        let y = cross(normal, x);
+        self.flat.clear();
+        self.flat.extend(self.link.iter().map(|&(_, q)| {
+            let arm = sub(q, above.point);
+            Point2::new(dot(x, arm), dot(y, arm))
+        }));
+        let [mut dx, mut dy] = newton_step(&self.flat)?;
+        let (now, worst_now) = self.energy(above.point, normal);
+        let reach_sq = self.flat[0].x * self.flat[0].x + self.flat[0].y * self.flat[0].y;
+        // Along x lies X_u alone: the map from parameters to the plane is triangular.
+        let (xu, xv, yv) = (dot(x, tangents.u), dot(x, tangents.v), dot(y, tangents.v));
+        for _ in 0..TRIES {
+            if dx * dx + dy * dy < STEP_MIN * STEP_MIN * reach_sq {
+                return None;
+            }
+            let dv = dy / yv;
+            let place = Point2::new(v.x + (dx - xv * dv) / xu, v.y + dv);
+            if place.is_finite() && self.is_valid(place) {
+                let there = self.chart.sheet.tangents(place);
+                let normal = unit(cross(there.u, there.v))?;
+                let (then, worst_then) = self.energy(there.point, normal);
+                if then < now && worst_then <= worst_now {
+                    return Some((place, lift(&there)));
+                }
+            }
+            (dx, dy) = (0.5 * dx, 0.5 * dy);
+        }
+        None
+    }
+
+    /// Sum of squares and largest of the inverse mean ratios in space; infinite when a triangle
+    /// faces away from the normal.
+    fn energy(&self, v: Vector, normal: Vector) -> (f64, f64) {
+        let (mut sum, mut worst) = (0.0, 0.0_f64);
+        for i in 0..self.link.len() {
+            let (u, w) = (self.link[i].1, self.link[(i + 1) % self.link.len()].1);
+            if u == w {
+                continue;
+            }
+            let (a, b) = (sub(u, v), sub(w, v));
+            let q = norm_sq(a) + norm_sq(b) + norm_sq(sub(w, u));
+            let area = cross(a, b);
+            let f = if dot(area, normal) > 0.0 { q / norm_sq(area).sqrt() } else { f64::INFINITY };
+            sum += f * f;
+            worst = worst.max(f);
+        }
+        (sum, worst)
+    }
+
+    /// Whether all triangles of the star are strictly counterclockwise in (u, v), exactly.
+    fn is_valid(&self, place: Point2) -> bool {
+        (0..self.link.len()).all(|i| {
+            let (u, w) = (self.link[i].0, self.link[(i + 1) % self.link.len()].0);
+            orient2d(place, u, w) == Sign::Positive
+        })
+    }
+}
+
+/// Newton's step from 0 on the energy of the flattened star; `None` where it is not convex.
+///
+/// With f = q / a, q the squared sides and a twice the area of a triangle: grad a is the opposite
+/// edge turned a quarter, grad q = -2 (u + w), and the second derivatives are 4 for q and 0 for a.
+fn newton_step(flat: &[Point2]) -> Option<[f64; 2]> {
+    let (mut gradient, mut hessian) = ([0.0; 2], [0.0; 3]);
+    for (i, &u) in flat.iter().enumerate() {
+        let w = flat[(i + 1) % flat.len()];
+        if u == w {
+            continue;
+        }
+        let (ex, ey) = (w.x - u.x, w.y - u.y);
+        let q = u.x * u.x + u.y * u.y + w.x * w.x + w.y * w.y + ex * ex + ey * ey;
+        let a = u.x * w.y - u.y * w.x;
+        let f = q / a;
+        let (ax, ay) = (-ey, ex);
+        let (gx, gy) = ((-2.0 * (u.x + w.x) - f * ax) / a, (-2.0 * (u.y + w.y) - f * ay) / a);
+        let (hxx, hyy) = ((4.0 - 2.0 * gx * ax) / a, (4.0 - 2.0 * gy * ay) / a);
+        let hxy = -(gx * ay + gy * ax) / a;
+        gradient[0] += f * gx;
+        gradient[1] += f * gy;
+        hessian[0] += gx * gx + f * hxx;
+        hessian[1] += gx * gy + f * hxy;
+        hessian[2] += gy * gy + f * hyy;
+    }
+    let ([xx, xy, yy], [gx, gy]) = (hessian, gradient);
+    let determinant = xx * yy - xy * xy;
+    (determinant > 0.0 && xx > 0.0)
+        .then(|| [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant])
+}
