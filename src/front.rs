@@ -357,11 +357,14 @@ impl<'a, C: Chart> Front<'a, C> {
     }
 
     fn placed(&self, frame: &C::Frame, candidate: &Candidate) -> Option<Trial<C::Lift>> {
-        let mut site = self.chart.place(frame, candidate.point)?;
-        if let Some(quantum) = self.options.quantum {
-            site.at = site.at.rounded_to(quantum);
-        }
-        Some(Trial::placed(site, candidate))
+        let site = self.chart.place(frame, candidate.point)?;
+        Some(Trial::placed(self.rounded(site), candidate))
+    }
+
+    /// The site at coordinates that growing back to the user's scale does not round.
+    fn rounded(&self, site: Site<C::Lift>) -> Site<C::Lift> {
+        let at = self.options.quantum.map_or(site.at, |quantum| site.at.rounded_to(quantum));
+        Site { at, ..site }
     }
 
     /// Whether the trial's exact cavity is sound and its clearances are kept.
@@ -479,7 +482,8 @@ impl<'a, C: Chart> Front<'a, C> {
             end = fan.next(corner, end, outgoing);
             let length = self.vertices.spacing(self.open.origin(base));
             let spacing = self.chart.spacing(frame, end, Base { length }, &mut hint);
-            let trial = self.chart.place(frame, end).map(|site| Trial::given(site, spacing));
+            let site = self.chart.place(frame, end).map(|site| self.rounded(site));
+            let trial = site.map(|site| Trial::given(site, spacing));
             let Some(trial) = trial.filter(|trial| self.admits(base, trial)) else { return };
             let [from_a, to_b] = self.insert(id, trial, hint);
             id = if outgoing { from_a } else { to_b };

@@ -565,6 +565,22 @@ fn a_certificate_covers_all_files_of_a_mesh() {
     assert!(out(&changed).contains("NOT CONFIRMED"), "{}", out(&changed));
 }
 
+/// Found by torture: the spokes of a fan at coordinates that subnormal numbers round.
+const SUBNORMAL: &str = r#"{"format": "trigrade-domain", "version": 1, "points": [[0.0, 0.0],
+[-3e-319, 0.0], [0.0, 2e-319], [-2.145e-319, 0.0], [-2.145e-319, 7e-321], [-2.145e-319, 6.6e-321],
+[-2.146e-319, 4e-320]], "loops": [{"vertices": [0, 1, 2], "marker": 1, "role": "outer"}],
+"segments": [{"vertices": [3, 4], "marker": 0}, {"vertices": [5, 6], "marker": 0}],
+"inside": "even-odd"}"#;
+
+#[test]
+fn points_of_a_fan_are_kept_by_subnormal_numbers() {
+    let (folder, _) = folder();
+    let [domain, mesh] = ["s.json", "s.off"].map(|n| at(&folder, n));
+    fs::write(&domain, SUBNORMAL).expect("writable");
+    let output = run(&["mesh", &domain, "-o", &mesh]);
+    assert_exit(&output, 0);
+}
+
 #[test]
 fn plot_draws() {
     let (folder, plate) = folder();
