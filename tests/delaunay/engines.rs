@@ -37,11 +37,7 @@ fn engines_agree_on_hard_clouds() {
 // spec: L2
 #[test]
 fn engines_agree_on_the_cocircular_3600() {
-    let points = clouds::distinct(clouds::circle(3600));
-    let fast = with(Engine::Auto, &points).triangles();
-    for engine in [Engine::Watson, Engine::Lawson, Engine::DivideConquer, Engine::Sweep] {
-        assert_eq!(with(engine, &points).triangles(), fast, "{}", engine.name());
-    }
+    agreed("circle of 3,600", &clouds::distinct(clouds::circle(3600)));
 }
 
 /// Every engine on 100,000 points of each cloud and on grids of a million, but on 20,000 of the axis
