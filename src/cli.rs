@@ -102,7 +102,7 @@ fn subject(verb: &Verb) -> String {
     match verb {
         Verb::Mesh(mesh) => mesh.domain.display().to_string(),
         Verb::Check(check) => check.mesh.display().to_string(),
-        Verb::Delaunay(delaunay) => delaunay.points.display().to_string(),
+        Verb::Delaunay(delaunay) => delaunay.input.points.display().to_string(),
         _ => String::new(),
     }
 }

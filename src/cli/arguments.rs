@@ -347,6 +347,17 @@ pub enum Rules {
     Hard,
 }
 
+/// A file of points.
+#[derive(Clone, Debug, Args)]
+pub struct PointInput {
+    /// The points: .node, .csv, .xyz, .npy, .json, .geojson or .poly; `-` is standard input.
+    #[arg(value_name = "POINTS", value_hint = ValueHint::FilePath)]
+    pub points: PathBuf,
+    /// Form of the points, whatever their extension (needed for `-`).
+    #[arg(long, value_name = "FORM")]
+    pub from: Option<String>,
+}
+
 /// `trigrade delaunay`
 #[derive(Clone, Debug, Args)]
 #[command(
@@ -376,12 +387,9 @@ Examples:
   trigrade delaunay - --from xyz -o - --form json < cloud.xyz > cloud.json"
 )]
 pub struct DelaunayArguments {
-    /// The points: .node, .csv, .xyz, .npy, .json, .geojson or .poly; `-` is standard input.
-    #[arg(value_name = "POINTS", value_hint = ValueHint::FilePath)]
-    pub points: PathBuf,
-    /// Form of the points, whatever their extension (needed for `-`).
-    #[arg(long, value_name = "FORM")]
-    pub from: Option<String>,
+    /// What is read.
+    #[command(flatten)]
+    pub input: PointInput,
     /// Where the mesh goes: .off, .msh, .json, .svg, ...; `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
     #[arg(required = true)]
@@ -422,12 +430,9 @@ Examples:
   trigrade voronoi stations.csv --clip country.geojson -o cells.json
 Places are rounded once to doubles; which cells and edges there are is exact (SPEC 17).")]
 pub struct VoronoiArguments {
-    /// The points: .node, .csv, .xyz, .npy, .json, .geojson or .poly; `-` is standard input.
-    #[arg(value_name = "POINTS", value_hint = ValueHint::FilePath)]
-    pub points: PathBuf,
-    /// Form of the points, whatever their extension (needed for `-`).
-    #[arg(long, value_name = "FORM")]
-    pub from: Option<String>,
+    /// What is read.
+    #[command(flatten)]
+    pub input: PointInput,
     /// Where it goes: .json, .obj, .svg or .png; `-` is standard output; repeatable.
     #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
     #[arg(required = true)]

@@ -13,7 +13,7 @@ use super::output::{Cleanup, Outputs};
 use super::size_file::load_node_data;
 use super::surface;
 use super::verdict;
-use super::watch::{Watch, time};
+use super::watch::{Watch, stages};
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::size::{SizeFit, size_fit};
 use crate::check::surface::{SurfaceLimits, against_model};
@@ -67,9 +67,7 @@ pub fn run(
         tell_size(size_fit(mesh, field), &mut outcome);
     }
     if arguments.timings {
-        let laps: Vec<String> =
-            laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
-        outcome.text.push_str(&format!("\n  {:<11}{}", "time", laps.join(", ")));
+        outcome.text.push_str(&format!("\n  {:<11}{}", "time", stages(&laps)));
     }
     if let Some((_, model)) = &model {
         let limits = SurfaceLimits {

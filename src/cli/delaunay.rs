@@ -5,19 +5,18 @@ use super::check::write_json;
 use super::console::Console;
 use super::domain_file;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
-use super::forms::{OutputFile, OutputForm, is_read, output_files_or_json};
-use super::input::is_dash;
-use super::mesh::{count, unreadable};
-use super::mesh_file::{self, Drawing, parse};
-use super::outcome::{Checked, Outcome};
+use super::forms::{OutputFile, output_files_or_json};
+use super::mesh::count;
+use super::mesh_file::{self, Drawing, parse, unreadable, written_meshes};
+use super::outcome::{Checked, Outcome, file_names, output_names};
 use super::output::{Cleanup, Outputs};
 use super::point_file::{Points, repetitions};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, time};
+use super::watch::{Watch, seconds, stages, time, total};
 use crate::check::{CheckOptions, Report, check};
 use crate::delaunay::{CdtError, Engine};
 use crate::domain::Domain;
-use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
+use crate::format::{MeshForm, MeshView, WriteOptions, write_mesh};
 use crate::mesh::MeshData;
 use crate::point::Point2;
 use crate::triangulate::{
@@ -43,7 +42,7 @@ pub fn run(
     // Staged before the long work: a target that cannot be written is known now.
     let mut outputs = Outputs::prepare(&targets, cleanup)?;
     watch.begin("read");
-    let points = Points::load(&arguments.points, arguments.from.as_deref())?;
+    let points = Points::load(&arguments.input)?;
     watch.begin("triangulate");
     let domain = points.domain().filter(|_| !arguments.unconstrained);
     let result = triangulate(&points, domain, options(arguments))
@@ -187,22 +186,8 @@ fn read_back(
     files: &[OutputFile],
     result: &Triangulated,
 ) -> Result<(String, MeshData), Failure> {
-    let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
-    for (i, file) in files.iter().enumerate() {
-        let OutputForm::Mesh(form, _) = file.form else { continue };
-        if !is_read(form) {
-            continue;
-        }
-        match file.companion {
-            Some(companion) => companions.push((companion, outputs.read_back(i)?)),
-            None => {
-                let name = file.path.display().to_string();
-                let mesh =
-                    parse(&outputs.read_back(i)?, form, &std::mem::take(&mut companions), false);
-                let mesh = mesh.map_err(|e| unreadable(&name, &e))?;
-                return Ok((name, mesh));
-            }
-        }
+    if let Some(first) = written_meshes(outputs, files).next() {
+        return first;
     }
     let name = "a temporary MSH file".to_owned();
     let mut bytes = Vec::new();
@@ -263,15 +248,11 @@ impl Summary {
             line("check", verdict::sentence(report, name));
         }
         if timings {
-            let each: Vec<String> =
-                self.laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
-            line("time", each.join(", "));
+            line("time", stages(&self.laps));
         }
-        line("total", time(self.laps.iter().map(|(_, lap)| *lap).sum()));
+        line("total", time(total(&self.laps)));
         if self.exit() == EXIT_HOLDS {
-            let names: Vec<String> =
-                self.written.iter().map(|path| path.display().to_string()).collect();
-            line("written", names.join(", "));
+            line("written", output_names(&self.written));
         } else {
             line("written", "nothing: the mesh did not pass its check".into());
             lines.extend(self.report.iter().map(|(name, r)| verdict::findings(r, name)));
@@ -302,13 +283,6 @@ impl Summary {
             Some(_) => "failed",
             None => "not-checked",
         };
-        let times: serde_json::Map<String, Value> = self
-            .laps
-            .iter()
-            .map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64())))
-            .collect();
-        let files = self.written.iter().filter(|path| !is_dash(path));
-        let written: Vec<String> = files.map(|path| path.display().to_string()).collect();
         json!({
             "schema": "trigrade-delaunay/1",
             "verdict": verdict,
@@ -321,8 +295,8 @@ impl Summary {
             "engine": self.engine.name(),
             "points": self.result.mesh.points.len(),
             "triangles": self.result.mesh.triangles.len(),
-            "written": written,
-            "seconds": times,
+            "written": file_names(&self.written),
+            "seconds": seconds(&self.laps),
             "check": self.report.as_ref().map(|(_, report)| report),
         })
     }

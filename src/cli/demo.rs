@@ -9,7 +9,7 @@ use super::mesh_file::{self, Drawing, malformed, parse};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, time};
+use super::watch::{Watch, seconds, time, total};
 use crate::check::Report;
 use crate::domain::naca::naca0012;
 use crate::domain::{Domain, LoopRole};
@@ -195,7 +195,7 @@ fn table(done: &[Done]) -> String {
     );
     for Done { case, meshed, data, report, laps } in done {
         let figures = Figures::of(report).unwrap_or_default();
-        let total: Duration = laps.iter().map(|(_, lap)| *lap).sum();
+        let total = total(laps);
         let _ = writeln!(
             text,
             "{:<43}{:>10}{:>11}{:>12.4}{:>8.3}{:>8.3}{:>10.1}°  {:<8}{:>10}",
@@ -216,8 +216,6 @@ fn table(done: &[Done]) -> String {
 
 fn report_json(done: &[Done]) -> Value {
     let mesh = |Done { case, meshed, data, report, laps }: &Done| {
-        let seconds: serde_json::Map<String, Value> =
-            laps.iter().map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64()))).collect();
         json!({
             "name": case.name,
             "method": case.title,
@@ -226,7 +224,7 @@ fn report_json(done: &[Done]) -> Value {
             "triangles": data.triangles.len(),
             "points": data.points.len(),
             "radius_ratio": Figures::of(report).map(|figures| figures.json()),
-            "seconds": seconds,
+            "seconds": seconds(laps),
             "check": report,
         })
     };

@@ -4,23 +4,22 @@ use super::arguments::{Farfield, MeshArguments};
 use super::check::write_json;
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
-use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
-use super::forms::{OutputFile, OutputForm, is_read, output_files};
+use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
+use super::forms::{OutputFile, output_files};
 use super::input::Input;
-use super::input::is_dash;
-use super::mesh_file::{self, Drawing, malformed, parse};
-use super::outcome::{Checked, Outcome};
+use super::mesh_file::{self, Drawing, parse, unreadable, written_meshes};
+use super::outcome::{Checked, Outcome, file_names, output_names};
 use super::output::{Cleanup, Outputs};
 use super::refinement::Refinement;
 use super::size_file::load_size_field;
 use super::surface;
 use super::verdict::{self, Figures};
-use super::watch::{Watch, time};
+use super::watch::{Watch, seconds, stages, time, total};
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::{CheckOptions, Report};
 use crate::domain::Domain;
 use crate::domain::validate::{Plc, validate};
-use crate::format::{Companion, MeshForm, MeshView, WriteOptions, write_mesh};
+use crate::format::{MeshForm, MeshView, WriteOptions, write_mesh};
 use crate::mesh::MeshData;
 use crate::mesher::{Count, Fit, MeshError, Meshed, Observer, Options, mesh_plc};
 use crate::size::Prediction;
@@ -155,24 +154,7 @@ pub(super) fn read_back(
     files: &[OutputFile],
     mesh: MeshView<'_>,
 ) -> Result<Vec<(String, MeshData)>, Failure> {
-    let mut meshes = Vec::new();
-    let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
-    for (i, file) in files.iter().enumerate() {
-        let OutputForm::Mesh(form, _) = file.form else { continue };
-        if !is_read(form) {
-            continue;
-        }
-        match file.companion {
-            // Companions stand before their main file.
-            Some(companion) => companions.push((companion, outputs.read_back(i)?)),
-            None => {
-                let name = file.path.display().to_string();
-                let bytes = outputs.read_back(i)?;
-                let mesh = parse(&bytes, form, &std::mem::take(&mut companions), false);
-                meshes.push((name.clone(), mesh.map_err(|e| unreadable(&name, &e))?));
-            }
-        }
-    }
+    let mut meshes = written_meshes(outputs, files).collect::<Result<Vec<_>, _>>()?;
     if meshes.is_empty() {
         meshes.push(("a temporary OFF file".into(), through_off(mesh)?));
     }
@@ -185,16 +167,6 @@ fn through_off(mesh: MeshView<'_>) -> Result<MeshData, Failure> {
     write_mesh(mesh, MeshForm::Off, options, &mut bytes)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
     parse(&bytes, MeshForm::Off, &[], false).map_err(|e| unreadable("a temporary OFF file", &e))
-}
-
-/// A file that was written and cannot be read back is a fault of this program.
-#[must_use]
-pub fn unreadable(name: &str, error: &crate::format::ReadError) -> Failure {
-    let mut failure = malformed(name, error);
-    failure.exit = EXIT_FINDINGS;
-    failure.diagnostics[0].message.insert_str(0, "the written mesh cannot be read back: ");
-    failure.diagnostics[0].helps.push("this is a fault of trigrade; nothing was written".into());
-    failure
 }
 
 /// Checks each mesh; the first report that is no pass, or the first.
@@ -346,16 +318,11 @@ impl Summary {
             None => {}
         }
         if timings {
-            let each: Vec<String> =
-                laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
-            line("time", each.join(", "));
+            line("time", stages(laps));
         }
-        let total: Duration = laps.iter().map(|(_, lap)| *lap).sum();
-        line("total", time(total));
+        line("total", time(total(laps)));
         if !self.written.is_empty() {
-            let names: Vec<String> =
-                self.written.iter().map(|path| path.display().to_string()).collect();
-            line("written", names.join(", "));
+            line("written", output_names(&self.written));
         }
         if self.exit() != EXIT_HOLDS {
             line("written", "nothing: the mesh did not pass its check".into());
@@ -377,14 +344,6 @@ impl Summary {
             Some(_) => "failed",
             None => "not-checked",
         };
-        let times: serde_json::Map<String, Value> =
-            laps.iter().map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64()))).collect();
-        let written: Vec<String> = self
-            .written
-            .iter()
-            .filter(|path| !is_dash(path))
-            .map(|path| path.display().to_string())
-            .collect();
         json!({
             "schema": "trigrade-mesh/1",
             "verdict": verdict,
@@ -401,8 +360,8 @@ impl Summary {
                 "edges": fit.edges,
             })),
             "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
-            "written": written,
-            "seconds": times,
+            "written": file_names(&self.written),
+            "seconds": seconds(laps),
             "check": self.check.as_ref().map(|(_, report)| report),
         })
     }

@@ -1,8 +1,8 @@
 //! Mesh files: reading with their companions, writing any form, pictures included.
 
 use super::arguments::MeshReading;
-use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
-use super::forms::{OutputFile, OutputForm, mesh_to_read};
+use super::failure::{Diagnostic, EXIT_CANNOT_RUN, EXIT_FINDINGS, Failure};
+use super::forms::{OutputFile, OutputForm, is_read, mesh_to_read};
 use super::input::load;
 use super::output::Outputs;
 use crate::check::certificate::FileHash;
@@ -92,6 +92,42 @@ pub fn parse(
     let options =
         ReadOptions { nodes: of(Companion::Nodes), edges: of(Companion::Edges), split_quads };
     read_mesh(bytes, form, &options)
+}
+
+/// Every written mesh that can be read, by name, read from its bytes when asked for.
+pub fn written_meshes<'a>(
+    outputs: &'a Outputs,
+    files: &'a [OutputFile],
+) -> impl Iterator<Item = Result<(String, MeshData), Failure>> + 'a {
+    let mut companions: Vec<(Companion, Vec<u8>)> = Vec::new();
+    files.iter().enumerate().filter_map(move |(i, file)| {
+        let OutputForm::Mesh(form, _) = file.form else { return None };
+        if !is_read(form) {
+            return None;
+        }
+        let bytes = match outputs.read_back(i) {
+            Ok(bytes) => bytes,
+            Err(failure) => return Some(Err(failure)),
+        };
+        if let Some(companion) = file.companion {
+            // Companions stand before their main file.
+            companions.push((companion, bytes));
+            return None;
+        }
+        let name = file.path.display().to_string();
+        let mesh = parse(&bytes, form, &std::mem::take(&mut companions), false);
+        Some(mesh.map_err(|e| unreadable(&name, &e)).map(|mesh| (name, mesh)))
+    })
+}
+
+/// A file that was written and cannot be read back is a fault of this program.
+#[must_use]
+pub fn unreadable(name: &str, error: &ReadError) -> Failure {
+    let mut failure = malformed(name, error);
+    failure.exit = EXIT_FINDINGS;
+    failure.diagnostics[0].message.insert_str(0, "the written mesh cannot be read back: ");
+    failure.diagnostics[0].helps.push("this is a fault of trigrade; nothing was written".into());
+    failure
 }
 
 /// A reader's error as a complaint about the file `name`.

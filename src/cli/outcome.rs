@@ -40,6 +40,20 @@ impl Checked {
     }
 }
 
+/// The names of the files written, for programs: standard output is none.
+#[must_use]
+pub fn file_names(paths: &[PathBuf]) -> Vec<String> {
+    let files = paths.iter().filter(|path| !is_dash(path));
+    files.map(|path| path.display().to_string()).collect()
+}
+
+/// The names of all outputs, for people.
+#[must_use]
+pub fn output_names(paths: &[PathBuf]) -> String {
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    names.join(", ")
+}
+
 /// A failure as programs read it.
 #[must_use]
 pub fn failure_json(failure: &Failure) -> Value {

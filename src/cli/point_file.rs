@@ -1,5 +1,6 @@
 //! Files of points: their form, reading, and telling what is wrong with them.
 
+use super::arguments::PointInput;
 use super::domain_file;
 use super::failure::{Diagnostic, Failure};
 use super::input::{Input, is_dash, load};
@@ -24,9 +25,9 @@ impl Points {
     ///
     /// # Errors
     /// Exit code 2: the file cannot be read, its form is not told, or it is malformed.
-    pub fn load(path: &Path, said: Option<&str>) -> Result<Self, Failure> {
-        let form = form_of(path, said)?;
-        let input = load(path)?;
+    pub fn load(wanted: &PointInput) -> Result<Self, Failure> {
+        let form = form_of(&wanted.points, wanted.from.as_deref())?;
+        let input = load(&wanted.points)?;
         let mut outcome = read_points(&input.bytes, form, None);
         if let Err(PointReadError::Domain(error)) = &outcome
             && error.problem == Problem::NodesElsewhere

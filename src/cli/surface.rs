@@ -8,10 +8,10 @@ use super::forms::{OutputFile, output_files};
 use super::input::{Input, is_dash, load};
 use super::mesh::{count, paths, read_back};
 use super::mesh_file::{self, Drawing};
-use super::outcome::{Checked, Outcome};
+use super::outcome::{Checked, Outcome, file_names, output_names};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, time};
+use super::watch::{Watch, seconds, stages, time, total};
 use crate::check::surface::{SurfaceLimits, SurfaceReport, against_model};
 use crate::check::{CheckOptions, Dimension, Report, check};
 use crate::format::{MeshView, model_json};
@@ -237,16 +237,11 @@ impl Summary {
             None => {}
         }
         if timings {
-            let each: Vec<String> =
-                laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
-            line("time", each.join(", "));
+            line("time", stages(laps));
         }
-        let total: Duration = laps.iter().map(|(_, lap)| *lap).sum();
-        line("total", time(total));
+        line("total", time(total(laps)));
         if !self.written.is_empty() {
-            let names: Vec<String> =
-                self.written.iter().map(|path| path.display().to_string()).collect();
-            line("written", names.join(", "));
+            line("written", output_names(&self.written));
         }
         if let Some(verdict) = self.check.as_ref().filter(|verdict| !verdict.passed()) {
             line("written", "nothing: the mesh did not pass its check".into());
@@ -263,10 +258,6 @@ impl Summary {
             Some(_) => "failed",
             None => "not-checked",
         };
-        let times: serde_json::Map<String, Value> =
-            laps.iter().map(|(stage, lap)| (stage.clone(), json!(lap.as_secs_f64()))).collect();
-        let written = self.written.iter().filter(|path| !is_dash(path));
-        let written: Vec<String> = written.map(|path| path.display().to_string()).collect();
         let predicted = self.prediction.or(self.meshed.as_ref().map(|meshed| meshed.prediction));
         let report = self.check.as_ref().map(|verdict| &verdict.report);
         json!({
@@ -278,8 +269,8 @@ impl Summary {
             "triangles": self.meshed.as_ref().map(|meshed| meshed.mesh.triangles.len()),
             "quality": report.and_then(Figures::of).map(|f| f.json()),
             "surface": self.check.as_ref().map(|verdict| as_json(&verdict.surface)),
-            "written": written,
-            "seconds": times,
+            "written": file_names(&self.written),
+            "seconds": seconds(laps),
             "check": report,
         })
     }

@@ -4,12 +4,11 @@ use super::arguments::{DomainReading, VoronoiArguments};
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
-use super::input::is_dash;
 use super::mesh::count;
-use super::outcome::Outcome;
+use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::point_file::{Points, repetitions};
-use super::watch::{Watch, time};
+use super::watch::{Watch, stages, time, total};
 use crate::domain::validate::validate;
 use crate::draw;
 use crate::format::{voronoi_json, voronoi_obj};
@@ -93,7 +92,7 @@ pub fn run(
     let clip = clip_for(&forms, arguments.clip.as_deref())?;
     let mut outputs = Outputs::prepare(&arguments.outputs, cleanup)?;
     watch.begin("read");
-    let points = Points::load(&arguments.points, arguments.from.as_deref())?;
+    let points = Points::load(&arguments.input)?;
     watch.begin("tessellate");
     let cells = voronoi(points.points(), true)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string()).at(&points.input.name)))?;
@@ -191,7 +190,7 @@ impl Summary {
             "vertices": self.cells.vertices.len(),
             "edges": self.cells.edges.len(),
             "pieces": self.clipped.as_ref().map(|clipped| clipped.pieces.len()),
-            "written": written(arguments),
+            "written": file_names(&arguments.outputs),
         });
         Outcome { exit: EXIT_HOLDS, text: self.text(arguments), json, checked: None }
     }
@@ -233,19 +232,12 @@ impl Summary {
             line("clipped", format!("{} pieces", count(clipped.pieces.len() as u64)));
         }
         if arguments.timings {
-            let each: Vec<String> =
-                self.laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
-            line("time", each.join(", "));
+            line("time", stages(&self.laps));
         }
-        line("total", time(self.laps.iter().map(|(_, lap)| *lap).sum()));
-        line("written", written(arguments).join(", "));
+        line("total", time(total(&self.laps)));
+        line("written", file_names(&arguments.outputs).join(", "));
         lines.join("\n")
     }
-}
-
-fn written(arguments: &VoronoiArguments) -> Vec<String> {
-    let files = arguments.outputs.iter().filter(|path| !is_dash(path));
-    files.map(|path| path.display().to_string()).collect()
 }
 
 #[cfg(test)]

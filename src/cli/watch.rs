@@ -5,6 +5,7 @@ use super::mesh::count;
 use crate::mesher::{Observer, Stage};
 use crate::size::Prediction;
 use indicatif::ProgressBar;
+use serde_json::Value;
 use std::time::{Duration, Instant};
 
 /// The stages of a run with their times, and a bar.
@@ -72,6 +73,27 @@ pub fn time(duration: Duration) -> String {
         s if s < 1.0 => format!("{:.1} ms", s * 1e3),
         s => format!("{s:.2} s"),
     }
+}
+
+/// The time of each stage, for people.
+#[must_use]
+pub fn stages(laps: &[(String, Duration)]) -> String {
+    let each: Vec<String> =
+        laps.iter().map(|(stage, lap)| format!("{stage} {}", time(*lap))).collect();
+    each.join(", ")
+}
+
+/// The time of all stages.
+#[must_use]
+pub fn total(laps: &[(String, Duration)]) -> Duration {
+    laps.iter().map(|(_, lap)| *lap).sum()
+}
+
+/// The seconds of each stage, for programs.
+#[must_use]
+pub fn seconds(laps: &[(String, Duration)]) -> Value {
+    let each = laps.iter().map(|(stage, lap)| (stage.clone(), lap.as_secs_f64().into()));
+    Value::Object(each.collect())
 }
 
 #[cfg(test)]
