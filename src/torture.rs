@@ -30,9 +30,8 @@
 //! }
 //! ```
 //!
-//! As a strategy of proptest: `(any::<u64>(), 0..40u64).prop_map(|(seed, index)| case(seed, index))`; in
-//! a fuzz target: `let (seed, index) = input.arbitrary()?; let case = case(seed, index);`. The
-//! family is that of the index, so a failure names itself by two numbers.
+//! For proptest, quickcheck and fuzz targets see [`strategy`]. The family is that of the index, so
+//! a failure names itself by two numbers.
 
 pub mod export;
 pub mod generate;
@@ -43,3 +42,4 @@ pub mod report;
 #[cfg(feature = "cli")]
 pub mod run;
 pub mod shrink;
+pub mod strategy;

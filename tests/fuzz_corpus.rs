@@ -130,6 +130,12 @@ fn point_files() {
     run(TARGETS[5]);
 }
 
+// spec: R13
+#[test]
+fn torture() {
+    run(TARGETS[6]);
+}
+
 #[test]
 #[should_panic(expected = "fails on this input")]
 fn a_fault_is_not_swallowed() {

@@ -9,16 +9,18 @@ pub mod mesh_readers;
 pub mod pipeline;
 pub mod point_files;
 pub mod predicates;
+pub mod torture;
 
 /// A target: its name, which is also the name of its corpus, and its body.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     ("predicates", predicates::run),
     ("domain_parsers", domain_parsers::run),
     ("mesh_readers", mesh_readers::run),
     ("cdt", cdt::run),
     ("pipeline", pipeline::run),
     ("point_files", point_files::run),
+    ("torture", torture::run),
 ];

@@ -43,7 +43,8 @@ pub fn run(bytes: &[u8]) {
     }
 }
 
-fn options(decoder: &mut Decoder<'_>) -> Options {
+/// Options of every kind.
+pub(crate) fn options(decoder: &mut Decoder<'_>) -> Options {
     let mut pick = |count| decoder.below(count);
     Options {
         method: [

@@ -384,6 +384,7 @@ pub fn count(n: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::failure::EXIT_FINDINGS;
 
     #[test]
     fn counts_are_grouped() {

@@ -7,12 +7,20 @@
 //! Source: A. Zeller, R. Hildebrandt, Simplifying and isolating failure-inducing input, IEEE Trans.
 //! Softw. Eng. 28 (2002); reduction to ever smaller chunks.
 
+mod candidates;
+mod edits;
+
+pub use candidates::candidates;
+
 use super::generate::Claim;
 use super::judge::Judgement;
+use crate::domain::Domain;
 use crate::domain::validate::validate;
-use crate::domain::{Domain, LoopRole};
-use crate::point::Point2;
-use std::collections::{BTreeMap, BTreeSet};
+use edits::{
+    isolated, loops_left, mapped, points_left, rounded, segments_left, shorter, simple_coordinates,
+    vertices, vertices_left, weight, with_number,
+};
+use std::collections::BTreeSet;
 
 /// A shrunk boundary and what it took.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,14 +66,6 @@ pub fn shrink(
     }
     let (judgement, trials) = (search.last?, search.trials);
     Some(Shrunk { domain: best, judgement, trials })
-}
-
-/// What shrinking makes smaller: vertices, loops, then digits.
-fn weight(domain: &Domain) -> (usize, usize, usize) {
-    let digits = domain.points.iter().flat_map(|p| [p.x, p.y]);
-    let digits = digits.map(|c| format!("{c:?}").len()).sum();
-    let vertices = domain.edges().count() + domain.points.len();
-    (vertices, domain.loops.len() + domain.segments.len(), digits)
 }
 
 /// Whether the boundary is what the claim says.
@@ -142,42 +142,25 @@ impl Search<'_> {
 
     fn without_segments(&mut self, best: Domain) -> Domain {
         let count = best.segments.len();
-        self.reduce(best, count, &|domain, gone| {
-            let mut left = domain.clone();
-            let mut index = 0..;
-            left.segments.retain(|_| !index.next().is_some_and(|i| gone.contains(&i)));
-            compacted(&left, &isolated(domain))
-        })
+        self.reduce(best, count, &segments_left)
     }
 
     fn without_points(&mut self, best: Domain) -> Domain {
-        let alone: Vec<usize> = isolated(&best).into_iter().collect();
-        self.reduce(best, alone.len(), &|domain, gone| {
-            let kept = (0..alone.len()).filter(|i| !gone.contains(i)).map(|i| alone[i]).collect();
-            compacted(domain, &kept)
-        })
+        let count = isolated(&best).len();
+        self.reduce(best, count, &points_left)
     }
 
     fn without_vertices(&mut self, best: Domain) -> Domain {
-        let count = best.loops.iter().map(|l| l.vertices.len()).sum();
-        self.reduce(best, count, &|domain, gone| {
-            let mut left = domain.clone();
-            let mut index = 0..;
-            for of in &mut left.loops {
-                of.vertices.retain(|_| !index.next().is_some_and(|i| gone.contains(&i)));
-                of.markers.truncate(of.vertices.len());
-            }
-            compacted(&left, &isolated(domain))
-        })
+        let count = vertices(&best);
+        self.reduce(best, count, &vertices_left)
     }
 
     /// Tries simpler coordinates for all points at once, the simplest first.
     fn with_simple_coordinates(&mut self, best: Domain) -> Domain {
-        let coarse = (1..25).map(|bits| on_grid(&best, f64::from(1u32 << bits)));
-        let fine = [unit(&best), moved(&best)];
-        let mut candidates = std::iter::once(ranks(&best)).chain(coarse).chain(fine);
+        let mut candidates = simple_coordinates(&best);
         let simple =
             candidates.find(|candidate| weight(candidate) < weight(&best) && self.fails(candidate));
+        drop(candidates);
         let mut best = simple.unwrap_or(best);
         for digits in 1..16 {
             let candidate = mapped(&best, &|c| rounded(c, digits));
@@ -195,10 +178,7 @@ impl Search<'_> {
             for axis in 0..2 {
                 let old = <[f64; 2]>::from(best.points[i])[axis];
                 for new in shorter(old) {
-                    let mut candidate = best.clone();
-                    let mut point = <[f64; 2]>::from(candidate.points[i]);
-                    point[axis] = new;
-                    candidate.points[i] = point.into();
+                    let candidate = with_number(&best, i, axis, new);
                     if self.fails(&candidate) {
                         best = candidate;
                         break;
@@ -210,120 +190,10 @@ impl Search<'_> {
     }
 }
 
-/// Numbers that print shorter than `c`, the simplest first.
-fn shorter(c: f64) -> Vec<f64> {
-    let length = |c: f64| format!("{c:?}").len();
-    let mut all = vec![0.0, 1.0, 2.0, 5.0, 10.0, libm::trunc(c)];
-    all.extend((1..8).map(|digits| rounded(c, digits)));
-    all.retain(|&n| {
-        n != c && (length(n) < length(c) || (length(n) == length(c) && n.abs() < c.abs()))
-    });
-    all.dedup();
-    all
-}
-
-/// `c` with so many significant decimal digits.
-fn rounded(c: f64, digits: usize) -> f64 {
-    format!("{c:.*e}", digits - 1).parse().unwrap_or(c)
-}
-
-/// Points that no loop and no segment uses.
-fn isolated(domain: &Domain) -> BTreeSet<usize> {
-    let used: BTreeSet<usize> = domain.edges().flatten().map(|v| v as usize).collect();
-    (0..domain.points.len()).filter(|i| !used.contains(i)).collect()
-}
-
-/// Without points that are neither used nor among `kept`, and without places in a file.
-fn compacted(domain: &Domain, kept: &BTreeSet<usize>) -> Domain {
-    let used: BTreeSet<usize> = domain.edges().flatten().map(|v| v as usize).collect();
-    let all: Vec<usize> =
-        (0..domain.points.len()).filter(|i| used.contains(i) || kept.contains(i)).collect();
-    let new: BTreeMap<usize, u32> = all.iter().copied().zip(0..).collect();
-    let mut left = domain.clone();
-    left.points = all.iter().map(|&i| domain.points[i]).collect();
-    left.point_markers.clear();
-    left.places = crate::domain::Places::default();
-    let renumber = |v: &mut u32| *v = new.get(&(*v as usize)).copied().unwrap_or(u32::MAX);
-    left.loops.iter_mut().flat_map(|l| l.vertices.iter_mut()).for_each(renumber);
-    left.segments.iter_mut().flat_map(|s| s.vertices.iter_mut()).for_each(renumber);
-    left
-}
-
-/// Without some loops, and without the holes that claim them.
-fn loops_left(domain: &Domain, gone: &BTreeSet<usize>) -> Domain {
-    let is_gone = |i: usize| {
-        let claims = domain.loops.get(i).map(|l| l.role);
-        gone.contains(&i) || matches!(claims, Some(LoopRole::HoleOf(of)) if gone.contains(&of))
-    };
-    let all: Vec<usize> = (0..domain.loops.len()).filter(|&i| !is_gone(i)).collect();
-    let mut left = domain.clone();
-    left.loops = all.iter().map(|&i| domain.loops[i].clone()).collect();
-    for of in &mut left.loops {
-        if let LoopRole::HoleOf(outer) = &mut of.role {
-            *outer = all.binary_search(outer).unwrap_or(usize::MAX);
-        }
-    }
-    compacted(&left, &isolated(domain))
-}
-
-fn mapped(domain: &Domain, of: &dyn Fn(f64) -> f64) -> Domain {
-    let mut new = domain.clone();
-    for p in &mut new.points {
-        *p = Point2::new(of(p.x), of(p.y));
-    }
-    new
-}
-
-/// Every coordinate becomes its rank among those of its axis.
-fn ranks(domain: &Domain) -> Domain {
-    let rank = |axis: usize| {
-        let mut all: Vec<f64> =
-            domain.points.iter().map(|&p| <[f64; 2]>::from(p)[axis] + 0.0).collect();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        move |c: f64| all.partition_point(|&other| other < c) as f64
-    };
-    let (x, y) = (rank(0), rank(1));
-    let mut new = domain.clone();
-    for p in &mut new.points {
-        *p = Point2::new(x(p.x), y(p.y));
-    }
-    new
-}
-
-/// Scaled by a power of two so that the largest coordinate is about 1000.
-fn unit(domain: &Domain) -> Domain {
-    let largest = domain.points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(0.0, f64::max);
-    let (_, exponent) = libm::frexp(largest);
-    mapped(&moved(domain), &|c| libm::scalbn(c, 10 - exponent))
-}
-
-/// Integers from 0 to `cells`, by rounding; tried, not trusted.
-fn on_grid(domain: &Domain, cells: f64) -> Domain {
-    let Some(bounds) = domain.bounding_box() else { return domain.clone() };
-    let side = (bounds.max.x - bounds.min.x).max(bounds.max.y - bounds.min.y);
-    let place = |c: f64, low: f64| libm::round((c - low) / side * cells);
-    let mut new = domain.clone();
-    for p in &mut new.points {
-        *p = Point2::new(place(p.x, bounds.min.x), place(p.y, bounds.min.y));
-    }
-    new
-}
-
-/// Moved so that the smallest coordinates are 0; rounding may spoil it, which the trial shows.
-fn moved(domain: &Domain) -> Domain {
-    let Some(bounds) = domain.bounding_box() else { return domain.clone() };
-    let mut new = domain.clone();
-    for p in &mut new.points {
-        *p = Point2::new(p.x - bounds.min.x, p.y - bounds.min.y);
-    }
-    new
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::torture::generate::{Case, Selection};
+    use crate::torture::generate::Selection;
     use crate::torture::judge::{Answer, Demands, judge};
 
     fn verdict(domain: &Domain, claim: Claim, answer: &Answer) -> Judgement {
@@ -394,21 +264,5 @@ mod tests {
         };
         let shrunk = shrink(&case.domain, case.claim, &known, 7, &mut refuses).expect("it fails");
         assert_eq!((shrunk.trials, asked), (7, 7));
-    }
-
-    #[test]
-    fn holes_of_a_loop_that_goes_go_with_it() {
-        let selection = Selection { families: vec!["many-holes".into()], ..Selection::new(3) };
-        let has_roles =
-            |case: &Case| case.domain.loops.iter().skip(1).all(|l| l.role == LoopRole::HoleOf(0));
-        let case = (0..20).filter_map(|i| selection.case(i)).find(has_roles).expect("most have");
-        assert!(loops_left(&case.domain, &BTreeSet::from([0])).loops.is_empty());
-    }
-
-    #[test]
-    fn shorter_numbers_are_shorter() {
-        assert!(shorter(0.0).is_empty());
-        assert!(shorter(123_456.75).contains(&123_456.0));
-        assert!(shorter(1.0 + f64::EPSILON).contains(&1.0));
     }
 }
