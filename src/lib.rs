@@ -43,3 +43,12 @@ pub mod torture;
 
 #[cfg(feature = "cli")]
 pub mod cli;
+
+/// The Rust code in the guide compiles and runs.
+#[cfg(doctest)]
+mod guide {
+    #[doc = include_str!("../docs/guide/library.md")]
+    struct Library;
+    #[doc = include_str!("../docs/guide/torture.md")]
+    struct Torture;
+}

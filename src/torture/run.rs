@@ -18,7 +18,6 @@ pub use tool::{Asked, Tool, ToolError};
 use super::generate::{Case, Claim, Selection};
 use super::judge::{Class, Demands, Judgement, judge};
 use super::shrink::{Shrunk, shrink};
-use crate::check::Id;
 use crate::domain::Domain;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -219,22 +218,25 @@ fn ask_and_judge(
     Ok((judgement, asked))
 }
 
-/// Failures of one kind: verdict, first finding, family.
-type Kind = (Class, Option<Id>, String);
-
-/// Shrinks the first failures of each kind, and writes them down.
+/// Shrinks failures of every class, and of every kind in it, before a second of any; writes them down.
 fn reproduce(plan: &Plan, records: &[Record]) -> Result<Vec<Reproducer>, RunError> {
-    let mut kinds: BTreeMap<Kind, Vec<&Record>> = BTreeMap::new();
-    for record in records.iter().filter(|record| record.judgement.class.is_failure()) {
-        let first = record.judgement.findings.first().copied();
-        let kind = (record.judgement.class, first, record.family.clone());
-        kinds.entry(kind).or_default().push(record);
-    }
-    let rounds = kinds.values().map(Vec::len).max().unwrap_or(0);
-    let by_turns = (0..rounds).flat_map(|i| kinds.values().filter_map(move |all| all.get(i)));
-    let mut chosen: Vec<&Record> = by_turns.take(plan.shrunk_max).copied().collect();
+    let failures = records.iter().filter(|record| record.judgement.class.is_failure()).collect();
+    let by_family = by_turns(failures, |record| record.family.clone());
+    let by_finding = by_turns(by_family, |record| record.judgement.findings.first().copied());
+    let by_class = by_turns(by_finding, |record| record.judgement.class);
+    let mut chosen: Vec<&Record> = by_class.into_iter().take(plan.shrunk_max).collect();
     chosen.sort_by_key(|record| record.index);
     chosen.into_par_iter().with_max_len(1).map(|record| reproduce_one(plan, record)).collect()
+}
+
+/// One record of each key, then a second of each, and so on; those of a key keep their order.
+fn by_turns<K: Ord>(records: Vec<&Record>, key: impl Fn(&Record) -> K) -> Vec<&Record> {
+    let mut of_key: BTreeMap<K, Vec<&Record>> = BTreeMap::new();
+    for record in records {
+        of_key.entry(key(record)).or_default().push(record);
+    }
+    let rounds = of_key.values().map(Vec::len).max().unwrap_or(0);
+    (0..rounds).flat_map(|i| of_key.values().filter_map(move |all| all.get(i)).copied()).collect()
 }
 
 fn reproduce_one(plan: &Plan, record: &Record) -> Result<Reproducer, RunError> {

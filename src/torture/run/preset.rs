@@ -67,7 +67,7 @@ pub const PRESETS: [Preset; 6] = [
         form: BoundaryForm::Medit,
         answer: "mesh",
         allow: &[Id::UnusedVertex],
-        install: "`pip install mmg`, or a package of your system, or https://www.mmgtools.org",
+        install: "`pip install mmgpy`, or a package of your system, or https://www.mmgtools.org",
     },
     Preset {
         name: "spade",

@@ -114,3 +114,17 @@ fn no_family_is_no_run() {
     plan.selection.families = vec!["no such".into()];
     assert!(matches!(run(&plan, &|_| ()), Err(RunError::NoFamily)));
 }
+
+/// A mesher that refuses what has an odd number of bytes, and crashes on the rest.
+const FICKLE: &str = "test $(( $(wc -c < {in}) % 2 )) = 1 && exit 1; kill -SEGV $$";
+
+// spec: R4
+#[test]
+fn every_class_of_failure_is_shrunk_before_a_second_of_one() {
+    let run = unwatched(&Plan { trials_max: 1, ..plan(FICKLE, None) });
+    let of = |class| run.records.iter().filter(move |r| r.judgement.class == class).count();
+    assert!(of(Class::RefusedValid) > 2 && of(Class::Crash) > 2, "both come up, and often");
+    let mut classes: Vec<Class> = run.reproducers.iter().map(|r| r.judgement.class).collect();
+    classes.sort_unstable();
+    assert_eq!(classes, [Class::Crash, Class::RefusedValid]);
+}
