@@ -108,8 +108,8 @@ impl BoundaryForm {
 /// [`ExportError`]: what the format cannot say.
 ///
 /// # Complexity
-/// Linear, but for formats that need to know which loop lies in which (all but JSON, SVG and
-/// Medit): O(k n) for k loops with n vertices in all.
+/// Linear, but for formats that need to know which loop lies in which (all but JSON and
+/// SVG): O(k n) for k loops with n vertices in all.
 pub fn export(domain: &Domain, form: BoundaryForm) -> Result<Vec<u8>, ExportError> {
     let is_carved = matches!(domain.inside, Inside::Carve(_));
     if is_carved && !matches!(form, BoundaryForm::Json | BoundaryForm::Poly) {
@@ -136,8 +136,13 @@ fn refused(error: impl std::fmt::Display) -> ExportError {
     ExportError::Write(error.to_string())
 }
 
-/// Edges without triangles, as mmg2d meshes them.
+/// Edges without triangles, as mmg2d meshes them. It fills every bounded part of the plane, holes
+/// too, and keeps of the boundary what is said to be required.
 fn medit(domain: &Domain) -> Result<Vec<u8>, ExportError> {
+    let levels = nesting::levels(domain);
+    if levels.is_none_or(|levels| levels.iter().any(|level| level.depth > 0)) {
+        return Err(BoundaryForm::Medit.cannot_say("holes"));
+    }
     let loops = domain.loops.iter().flat_map(|l| l.edges().zip(l.markers.iter().copied()));
     let segments = domain.segments.iter().map(|s| (s.vertices, s.marker));
     let edges = loops.chain(segments).map(|(vertices, marker)| MarkedEdge { vertices, marker });
@@ -149,6 +154,14 @@ fn medit(domain: &Domain) -> Result<Vec<u8>, ExportError> {
     let mut out = Vec::new();
     format::write_mesh(MeshView::from(&mesh), MeshForm::Medit, WriteOptions::default(), &mut out)
         .map_err(refused)?;
+    out.truncate(out.trim_ascii_end().strip_suffix(b"End").map_or(out.len(), <[u8]>::len));
+    for (section, count) in
+        [("RequiredVertices", mesh.points.len()), ("RequiredEdges", mesh.edges.len())]
+    {
+        out.extend(format!("{section}\n{count}\n").bytes());
+        (1..=count).for_each(|i| out.extend(format!("{i}\n").bytes()));
+    }
+    out.extend(b"End\n");
     Ok(out)
 }
 
