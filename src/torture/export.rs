@@ -3,6 +3,7 @@
 //! Coordinates are printed so that they read back to the same bits. What a format cannot say (roles
 //! of loops, a hole too thin for a hole point) is an error: nothing is quietly changed.
 
+mod conforming;
 mod geo;
 mod in2d;
 mod nesting;
@@ -12,6 +13,7 @@ mod rings;
 use crate::domain::{Domain, Inside};
 use crate::format::{self, MeshForm, MeshView, WriteOptions, domain_json};
 use crate::mesh::{MarkedEdge, MeshData};
+use conforming::conforming;
 
 /// A format for boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -109,7 +111,8 @@ impl BoundaryForm {
 ///
 /// # Complexity
 /// Linear, but for formats that need to know which loop lies in which (all but JSON and
-/// SVG): O(k n) for k loops with n vertices in all.
+/// SVG): O(k n) for k loops with n vertices in all; Gmsh, Netgen and Medit want edges cut at the
+/// vertices that lie on them: O(n^2).
 pub fn export(domain: &Domain, form: BoundaryForm) -> Result<Vec<u8>, ExportError> {
     let is_carved = matches!(domain.inside, Inside::Carve(_));
     if is_carved && !matches!(form, BoundaryForm::Json | BoundaryForm::Poly) {
@@ -122,12 +125,12 @@ pub fn export(domain: &Domain, form: BoundaryForm) -> Result<Vec<u8>, ExportErro
             let carved = poly::carved(domain)?;
             format::poly::write(&carved, &mut out).map_err(refused)?;
         }
-        BoundaryForm::Geo => out = geo::write(domain)?.into_bytes(),
-        BoundaryForm::In2d => out = in2d::write(domain)?.into_bytes(),
+        BoundaryForm::Geo => out = geo::write(&conforming(domain))?.into_bytes(),
+        BoundaryForm::In2d => out = in2d::write(&conforming(domain))?.into_bytes(),
         BoundaryForm::Svg => out = rings::svg(domain)?.into_bytes(),
         BoundaryForm::GeoJson => out = rings::geojson(domain)?.into_bytes(),
         BoundaryForm::Wkt => out = rings::wkt(domain)?.into_bytes(),
-        BoundaryForm::Medit => out = medit(domain)?,
+        BoundaryForm::Medit => out = medit(&conforming(domain))?,
     }
     Ok(out)
 }
