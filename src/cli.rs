@@ -80,7 +80,7 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),
-        Verb::Torture(torture) => return torture::torture(torture, console),
+        Verb::Torture(torture) => return torture::torture(torture, console, cleanup),
         Verb::Explain(explain) => explain::run(explain.id.as_deref(), console)?,
         Verb::Completions(completions) => print_completions(completions.shell, console),
         Verb::Man => print_manual(console)?,

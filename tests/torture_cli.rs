@@ -3,7 +3,7 @@
 #![cfg(all(feature = "cli", unix))]
 
 use std::fs;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn torture(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_trigrade"));
@@ -110,4 +110,28 @@ fn verdicts_do_not_depend_on_the_number_of_threads() {
         json["failed"].clone()
     };
     assert_eq!(verdicts("1"), verdicts("3"));
+}
+
+// spec: K2 R6
+#[test]
+fn an_interrupt_ends_the_meshers_too() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let [begun, survived] = ["begun", "survived"].map(|name| folder.path().join(name));
+    let (note, trace) = (begun.display(), survived.display());
+    let mesher = format!("touch '{note}'; (sleep 4; touch '{trace}') & sleep 300; : {{in}}");
+    let mut torture = Command::new(env!("CARGO_BIN_EXE_trigrade"))
+        .args(["torture", "--mesher", &mesher, "--form", "json"])
+        .args(["--cases", "1", "--timeout", "300"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program runs");
+    let pause = |milliseconds| std::thread::sleep(std::time::Duration::from_millis(milliseconds));
+    (0..4000).take_while(|_| !begun.exists()).for_each(|_| pause(5));
+    assert!(begun.exists(), "the mesher is under way");
+    let status = Command::new("kill").args(["-INT", &torture.id().to_string()]).status();
+    assert!(status.expect("kill runs").success());
+    assert_eq!(torture.wait().expect("the program ends").code(), Some(130));
+    pause(4500);
+    assert!(!survived.exists(), "a child of the mesher went on");
 }

@@ -7,15 +7,17 @@
 
 use super::failure::{Diagnostic, EXIT_INTERRUPTED, Failure};
 use super::input::is_dash;
+use crate::torture::run::Running;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Temporary files that an interrupt must remove, shared with the signal handler.
 #[derive(Clone, Debug, Default)]
 pub struct Cleanup {
     paths: Arc<Mutex<Vec<PathBuf>>>,
+    meshers: Arc<OnceLock<Running>>,
 }
 
 impl Cleanup {
@@ -28,12 +30,21 @@ impl Cleanup {
         ctrlc::set_handler(move || {
             // Holding the lock to the end keeps a commit from starting after the removal.
             let paths = cleanup.lock();
+            if let Some(meshers) = cleanup.meshers.get() {
+                meshers.end_all();
+            }
             for path in paths.iter() {
                 let _ = fs::remove_file(path);
             }
             std::process::exit(i32::from(EXIT_INTERRUPTED));
         })
         .map_err(|e| Failure::cannot_run(Diagnostic::new(format!("cannot catch interrupts: {e}"))))
+    }
+
+    /// Lets an interrupt end these runs of other programs too.
+    pub fn also(&self, meshers: &Running) {
+        // There is one run of torture in a process.
+        let _ = self.meshers.set(meshers.clone());
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<PathBuf>> {

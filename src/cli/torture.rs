@@ -4,11 +4,13 @@ use super::arguments::TortureArguments;
 use super::console::Console;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::outcome::Outcome;
+use super::output::{Cleanup, Outputs};
 use crate::torture::export::BoundaryForm;
 use crate::torture::generate::{Selection, families};
 use crate::torture::report;
 use crate::torture::run::{
-    Limits, PRESETS, Plan, Preset, Record, Run, RunError, Tool, ToolError, read_corpus, replay, run,
+    Limits, PRESETS, Plan, Preset, Record, Run, RunError, Running, Tool, ToolError, read_corpus,
+    replay, run,
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -19,7 +21,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// # Errors
 /// Exit code 2: the mesher cannot be started, a name is unknown, a folder cannot be used.
-pub fn torture(arguments: &TortureArguments, console: &Console) -> Result<Outcome, Failure> {
+pub fn torture(
+    arguments: &TortureArguments,
+    console: &Console,
+    cleanup: &Cleanup,
+) -> Result<Outcome, Failure> {
     if arguments.list {
         return Ok(Outcome {
             exit: EXIT_HOLDS,
@@ -29,6 +35,7 @@ pub fn torture(arguments: &TortureArguments, console: &Console) -> Result<Outcom
         });
     }
     let plan = plan(arguments)?;
+    cleanup.also(&plan.tool.running);
     let run = match &arguments.replay {
         Some(folder) => {
             let corpus = read_corpus(folder).map_err(|error| cannot_run(&error.into()))?;
@@ -38,7 +45,7 @@ pub fn torture(arguments: &TortureArguments, console: &Console) -> Result<Outcom
     };
     let run = run.map_err(|error| cannot_run(&error))?;
     if let Some(out) = &plan.out {
-        write_reports(out, &run, &plan)?;
+        write_reports(out, &run, &plan, cleanup)?;
     }
     let is_clean = run.failures().next().is_none();
     Ok(Outcome {
@@ -111,6 +118,7 @@ fn tool(arguments: &TortureArguments) -> Result<Tool, Failure> {
             limit: None,
             allow: Vec::new(),
             install: None,
+            running: Running::default(),
         },
         None => preset(&arguments.preset)?,
     };
@@ -151,15 +159,16 @@ fn cannot_run(error: &RunError) -> Failure {
     Failure::cannot_run(diagnostic)
 }
 
-fn write_reports(out: &Path, run: &Run, plan: &Plan) -> Result<(), Failure> {
-    let save = |name: &str, text: String| {
-        let path = out.join(name);
-        fs::create_dir_all(out)
-            .and_then(|()| fs::write(&path, text))
-            .map_err(|error| Failure::io("write", &path, &error))
-    };
-    save("report.html", report::html(run, plan))?;
-    save("report.json", format!("{:#}\n", report::json(run, plan)))
+fn write_reports(out: &Path, run: &Run, plan: &Plan, cleanup: &Cleanup) -> Result<(), Failure> {
+    fs::create_dir_all(out).map_err(|error| Failure::io("write", out, &error))?;
+    let page = report::html(run, plan);
+    let json = format!("{:#}\n", report::json(run, plan));
+    let mut outputs =
+        Outputs::prepare(&["report.html", "report.json"].map(|n| out.join(n)), cleanup)?;
+    outputs.fill(0, |file| file.write_all(page.as_bytes()))?;
+    outputs.fill(1, |file| file.write_all(json.as_bytes()))?;
+    outputs.commit()?;
+    Ok(())
 }
 
 fn list_text() -> String {

@@ -6,12 +6,14 @@
 mod command;
 mod corpus;
 mod preset;
+mod running;
 mod state;
 mod tool;
 
 pub use command::Limits;
 pub use corpus::{Corpus, CorpusError, Reproducer, read_corpus};
 pub use preset::{PRESETS, Preset};
+pub use running::Running;
 pub use state::StateError;
 pub use tool::{Asked, Tool, ToolError};
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::torture::export::BoundaryForm;
 use crate::torture::generate::{Selection, case};
 use crate::torture::judge::Judgement;
-use crate::torture::run::{Limits, Reproducer, Tool};
+use crate::torture::run::{Limits, Reproducer, Running, Tool};
 use std::time::Duration;
 
 fn plan() -> Plan {
@@ -19,6 +19,7 @@ fn plan() -> Plan {
             limit: None,
             allow: Vec::new(),
             install: None,
+            running: Running::default(),
         },
         limits: Limits { time: Duration::from_secs(1), memory: 1 << 30 },
         aspect_max: None,

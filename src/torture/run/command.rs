@@ -1,5 +1,6 @@
 //! One run of a foreign program, with limits: its crashes, hangs and children stay its own.
 
+use super::running::Running;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -44,18 +45,24 @@ const TAIL: u64 = 2000;
 /// Runs a command line in a folder by the shell.
 ///
 /// # Errors
-/// When the shell cannot be started, or the folder not written.
-pub fn execute(command: &str, folder: &Path, limits: &Limits) -> io::Result<Ended> {
+/// When the shell cannot be started, or the folder not written, or an interrupt ended all runs.
+pub fn execute(
+    command: &str,
+    folder: &Path,
+    limits: &Limits,
+    running: &Running,
+) -> io::Result<Ended> {
     let path = folder.join("output.txt");
     let output = File::create(&path)?;
     let mut shell = shell(command, limits);
     shell.current_dir(folder).stdin(Stdio::null());
     shell.stdout(output.try_clone()?).stderr(output);
     let start = Instant::now();
-    let mut child = shell.spawn()?;
-    let status = wait(&mut child, start, limits.time)?;
+    let mut child = running.start(&mut shell, folder)?;
+    let status = wait(&mut child, start, limits.time);
     // Whatever it started and left behind goes with it.
-    kill_group(&child);
+    running.end(&child);
+    let status = status?;
     let status = match status {
         Some(status) => Some(status),
         None => {
@@ -108,16 +115,6 @@ fn shell(command: &str, _limits: &Limits) -> Command {
 }
 
 #[cfg(unix)]
-fn kill_group(child: &Child) {
-    // The group may be gone already.
-    let group = rustix::process::Pid::from_child(child);
-    let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
-}
-
-#[cfg(not(unix))]
-fn kill_group(_child: &Child) {}
-
-#[cfg(unix)]
 fn ending(status: ExitStatus) -> Ending {
     use std::os::unix::process::ExitStatusExt;
     match (status.signal(), status.code()) {
@@ -163,7 +160,7 @@ mod tests {
     fn run(command: &str, milliseconds: u64) -> Ended {
         let folder = tempfile::tempdir().expect("a temporary directory");
         let limits = Limits { time: Duration::from_millis(milliseconds), memory: 1 << 30 };
-        execute(command, folder.path(), &limits).expect("sh is there")
+        execute(command, folder.path(), &limits, &Running::default()).expect("sh is there")
     }
 
     // spec: R6
@@ -182,11 +179,36 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary directory");
         let limits = Limits { time: Duration::from_millis(300), memory: 1 << 30 };
         let command = "(sleep 2; touch survived) & sleep 60";
-        let ended = execute(command, folder.path(), &limits).expect("sh is there");
+        let ended =
+            execute(command, folder.path(), &limits, &Running::default()).expect("sh is there");
         assert_eq!(ended.ending, Ending::TimedOut);
         assert!(ended.time < Duration::from_secs(20), "{:?}", ended.time);
         std::thread::sleep(Duration::from_millis(2500));
         assert!(!folder.path().join("survived").exists(), "the child went on");
+    }
+
+    // spec: R6
+    #[test]
+    fn an_interrupt_ends_what_runs_and_lets_nothing_start() {
+        let folder = tempfile::tempdir().expect("a temporary directory");
+        let (place, running) = (folder.path().to_owned(), Running::default());
+        let limits = Limits { time: Duration::from_secs(60), memory: 1 << 30 };
+        let of_thread = running.clone();
+        let thread = std::thread::spawn(move || {
+            execute("touch begun; sleep 60 & sleep 60", &place, &limits, &of_thread)
+        });
+        while !folder.path().join("begun").exists() {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let start = Instant::now();
+        running.end_all();
+        // Its folder is gone with it, so there is no output to be told.
+        assert!(thread.join().expect("no panic").is_err());
+        assert!(start.elapsed() < Duration::from_secs(30));
+        assert!(!folder.path().exists());
+        let other = tempfile::tempdir().expect("a temporary directory");
+        let error = execute("true", other.path(), &limits, &running).expect_err("it is over");
+        assert_eq!(error.kind(), io::ErrorKind::Interrupted);
     }
 
     // spec: R6

@@ -1,5 +1,6 @@
 //! Meshers that are known by name: how they are called, what they read, how they are installed.
 
+use super::running::Running;
 use super::tool::Tool;
 use crate::check::Id;
 use crate::torture::export::BoundaryForm;
@@ -100,6 +101,7 @@ impl Preset {
             limit: (self.name == "self").then_some("above the limit of"),
             allow: self.allow.to_vec(),
             install: Some(self.install),
+            running: Running::default(),
         }
     }
 }

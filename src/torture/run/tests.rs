@@ -17,6 +17,7 @@ fn plan(command: &str, out: Option<&Path>) -> Plan {
             limit: None,
             allow: Vec::new(),
             install: None,
+            running: Running::default(),
         },
         limits: Limits { time: Duration::from_secs(20), memory: 1 << 30 },
         aspect_max: None,

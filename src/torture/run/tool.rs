@@ -1,6 +1,7 @@
 //! A mesher behind a command line: a boundary in, an answer out.
 
 use super::command::{Ended, Ending, Limits, execute, quoted};
+use super::running::Running;
 use crate::check::Id;
 use crate::domain::Domain;
 use crate::format::{MeshForm, ReadOptions, read_mesh};
@@ -13,7 +14,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// A mesher and how it is called.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Tool {
     /// Its name in reports.
     pub name: String,
@@ -30,6 +31,8 @@ pub struct Tool {
     pub allow: Vec<Id>,
     /// How to install it, if that is known.
     pub install: Option<&'static str>,
+    /// Its runs that are under way.
+    pub running: Running,
 }
 
 /// Why no answer could be had: not the mesher's fault, so the run ends.
@@ -115,7 +118,7 @@ impl Tool {
             }
         };
         fs::write(self.input(folder), bytes)?;
-        let ended = execute(&command, folder, limits)?;
+        let ended = execute(&command, folder, limits, &self.running)?;
         if matches!(ended.ending, Ending::Exit(126 | 127)) {
             return Err(ToolError::NotFound { said: ended.said, install: self.install });
         }
@@ -190,6 +193,7 @@ mod tests {
             limit: Some("too many"),
             allow: Vec::new(),
             install: Some("by hand"),
+            running: Running::default(),
         };
         let selection = Selection { families: vec!["spiral".into()], ..Selection::new(1) };
         let case = selection.case(0).expect("a family");
