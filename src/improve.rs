@@ -6,6 +6,7 @@
 //! Vertices of the boundary and of constraints never move.
 
 mod defects;
+mod energy;
 mod flip;
 mod patch;
 mod smooth;
@@ -13,7 +14,7 @@ mod split;
 
 use defects::Defects;
 pub use flip::flip_to_delaunay;
-use smooth::Smoother;
+use smooth::{Sheet, Smoother};
 pub use split::{SplitOptions, split_long_edges};
 
 use crate::point::Point2;
@@ -114,15 +115,16 @@ fn smooth(
     sweeps: u32,
     stats: &mut ImproveStats,
 ) {
-    let mut smoother = Smoother::new(mesh, points, fixed, quantum);
+    let mut smoother = Smoother::new(mesh, points.len());
+    let mut sheet = Sheet { mesh, points, fixed, quantum };
     if sweeps > 0 {
-        stats.moves += smoother.sweep();
+        stats.moves += smoother.sweep(&mut sheet);
     }
-    stats.flips += smoother.flip_all();
+    stats.flips += smoother.flip_all(&mut sheet);
     for _ in 1..sweeps {
-        let moves = smoother.sweep();
+        let moves = smoother.sweep(&mut sheet);
         stats.moves += moves;
-        stats.flips += smoother.flip();
+        stats.flips += smoother.flip(&mut sheet);
         if moves == 0 {
             break;
         }

@@ -5,8 +5,8 @@
 //! such change is tried on a patch, relaxed, and kept only if the patch is better for it.
 
 use super::ImproveStats;
-use super::patch::{Change, Cut, Origin, Patch, Worth};
-use super::smooth::inverse_mean_ratio;
+use super::patch::{Change, Cut, Origin, Patch};
+use super::energy::inverse_mean_ratio;
 use crate::point::Point2;
 use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
 
@@ -35,6 +35,15 @@ pub(super) struct Defects<'a> {
     active: Vec<bool>,
     epoch: u32,
     origin: Origin,
+    patches: Patches,
+}
+
+/// A patch as it is, one under trial, and the best so far.
+#[derive(Default)]
+struct Patches {
+    before: Patch,
+    trial: Patch,
+    best: Patch,
 }
 
 impl<'a> Defects<'a> {
@@ -51,8 +60,20 @@ impl<'a> Defects<'a> {
             mesh.set_mark(crate::triangulation::TriangleId(t), 0);
         }
         let active = vec![true; points.len()];
-        let (epoch, origin) = (0, Origin::default());
-        Self { mesh, points, spacing, fixed, quantum, rings, outgoing, active, epoch, origin }
+        let (epoch, origin, patches) = (0, Origin::default(), Patches::default());
+        Self {
+            mesh,
+            points,
+            spacing,
+            fixed,
+            quantum,
+            rings,
+            outgoing,
+            active,
+            epoch,
+            origin,
+            patches,
+        }
     }
 
     /// One pass over the irregular vertices and those with bad triangles, worst first; ends when
@@ -153,36 +174,40 @@ impl<'a> Defects<'a> {
             return (0, false);
         }
         let cut = Cut { rings: self.rings, fixed: self.fixed, epoch: self.epoch };
-        let before = Patch::cut(self.mesh, self.points, start, cut, &mut self.origin);
-        let Some(before) = before else { return (0, false) };
-        let mut best: Option<(Patch, Worth)> = None;
+        let Patches { mut before, mut trial, mut best } = std::mem::take(&mut self.patches);
+        if !before.cut(self.mesh, self.points, start, cut, &mut self.origin) {
+            self.patches = Patches { before, trial, best };
+            return (0, false);
+        }
         let now = before.worth();
+        let mut bound = now.excess - GAIN_MIN;
         let mut tried = 0;
+        let mut found = false;
         for change in changes {
             let Some(change) = self.local(change) else { continue };
-            let mut patch = before.clone();
-            if !patch.make(change) {
+            trial.assign(&before);
+            if !trial.make(change) {
                 continue;
             }
             tried += 1;
-            let bound = best.as_ref().map_or(now.excess - GAIN_MIN, |(_, w)| w.excess);
-            patch.relax(self.quantum, HOPELESS * bound);
-            let worth = patch.worth();
+            trial.relax(self.quantum, HOPELESS * bound);
+            let worth = trial.worth();
             if worth.excess < bound && worth.worst <= now.worst {
-                best = Some((patch, worth));
+                bound = worth.excess;
+                found = true;
+                std::mem::swap(&mut trial, &mut best);
             }
         }
-        let Some((patch, _)) = best else { return (tried, false) };
-        self.keep(&patch);
-        (tried, true)
+        if found {
+            self.keep(&best);
+        }
+        self.patches = Patches { before, trial, best };
+        (tried, found)
     }
 
     /// A change in the patch's terms.
     fn local(&self, change: Change) -> Option<Change> {
-        let local = |v: VertexId| {
-            let place = self.origin.vertices.iter().position(|&u| u == v)?;
-            Some(VertexId(place as u32))
-        };
+        let local = |v: VertexId| self.origin.place(v, self.epoch);
         Some(match change {
             Change::Flip(a, b) => Change::Flip(local(a)?, local(b)?),
             Change::Split(a, b) => Change::Split(local(a)?, local(b)?),

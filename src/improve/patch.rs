@@ -1,19 +1,21 @@
 //! A patch: the triangles around a vertex, cut out into a small mesh of their own, where a change of
 //! topology can be tried, relaxed and judged, and thrown away when it was no good.
 
-use super::smooth::{Smoother, inverse_mean_ratio};
+use super::energy::inverse_mean_ratio;
+use super::smooth::{NOWHERE, Sheet, Smoother};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// A small mesh; its vertices are the outline's first, then those inside that may not move, then
-/// the movable ones.
-#[derive(Clone, Default)]
+/// the movable ones. What memory it has is reused from one patch to the next.
+#[derive(Default)]
 pub(super) struct Patch {
     pub(super) mesh: Triangulation,
     pub(super) points: Vec<Point2>,
     /// Vertices below this index do not move.
     pub(super) fixed: usize,
+    smoother: Smoother,
 }
 
 /// Where a patch came from.
@@ -26,7 +28,11 @@ pub(super) struct Origin {
     /// For each border of the patch what lies across it in the mesh.
     pub(super) outside: Vec<Across>,
     /// For each triangle of the mesh its place in the patch, valid for those in it.
-    places: Vec<u32>,
+    triangle_places: Vec<u32>,
+    /// For each vertex of the mesh the last epoch in which it was found.
+    seen: Vec<u32>,
+    /// And its place in the patch.
+    vertex_places: Vec<u32>,
     tag: u32,
 }
 
@@ -72,85 +78,45 @@ const TRIANGLES_MAX: usize = 200;
 const SWEEPS: usize = 4;
 
 impl Patch {
-    /// Cuts the rings of triangles around the origin of `start` out of `mesh`. `None` where they are
+    /// Takes over another patch, reusing memory.
+    pub(super) fn assign(&mut self, other: &Self) {
+        self.mesh.assign(&other.mesh);
+        self.points.clone_from(&other.points);
+        self.fixed = other.fixed;
+        self.smoother.assign(&other.smoother);
+    }
+
+    /// Becomes the rings of triangles around the origin of `start` in `mesh`; `false` where they are
     /// too many, in several regions, or pinch the outline.
     pub(super) fn cut(
+        &mut self,
         mesh: &mut Triangulation,
         points: &[Point2],
         start: HalfEdgeId,
         cut: Cut,
         origin: &mut Origin,
-    ) -> Option<Self> {
-        let Cut { fixed, epoch, .. } = cut;
-        collect_rings(mesh, start, cut, &mut origin.triangles)?;
-        origin.tag = mesh.tag(start.triangle());
-        let mut outline = Vec::new();
-        let mut inside = Vec::new();
+    ) -> bool {
+        let Some(outline) = origin.collect(mesh, points.len(), start, cut) else { return false };
+        let held = origin.vertices[outline..].partition_point(|v| v.index() < cut.fixed);
+        self.fixed = outline + held;
+        self.points.clear();
+        self.points.extend(origin.vertices.iter().map(|v| points[v.index()]));
+        self.mesh.clear();
         for &t in &origin.triangles {
-            if mesh.tag(t) != origin.tag {
-                return None;
-            }
-            for e in t.half_edges() {
-                let is_outline = match mesh.across(e) {
-                    Across::Border(_) => true,
-                    Across::Twin(twin) => mesh.mark(twin.triangle()) != epoch,
-                };
-                if is_outline {
-                    outline.push(mesh.origin(e));
-                }
-                inside.push(mesh.origin(e));
-            }
+            let corners = mesh.corners(t).map(|v| VertexId(origin.vertex_places[v.index()]));
+            self.mesh.add(corners);
         }
-        let edges = outline.len();
-        outline.sort_unstable();
-        outline.dedup();
-        if outline.len() != edges {
-            return None;
-        }
-        inside.sort_unstable();
-        inside.dedup();
-        inside.retain(|v| outline.binary_search(v).is_err());
-        let held = inside.partition_point(|v| v.index() < fixed);
-        origin.vertices.clear();
-        origin.vertices.extend(outline.iter().chain(&inside));
-        let count = outline.len();
-        let local = |v: VertexId| {
-            let place = outline.binary_search(&v).unwrap_or_else(|_| {
-                count + inside.binary_search(&v).expect("a vertex of the patch")
-            });
-            VertexId(place as u32)
-        };
-        let mut patch = Self {
-            mesh: Triangulation::with_capacity(origin.triangles.len() + 4),
-            points: origin.vertices.iter().map(|v| points[v.index()]).collect(),
-            fixed: count + held,
-        };
-        let all = std::mem::take(&mut origin.triangles);
-        for &t in &all {
-            let new = patch.mesh.add(mesh.corners(t).map(local));
-            patch.mesh.set_tag(new, 0);
-        }
-        patch.link_up(mesh, &all, epoch, origin);
-        origin.triangles = all;
-        Some(patch)
+        self.link_up(mesh, cut.epoch, origin);
+        self.smoother.at_rest(&self.mesh, self.points.len());
+        true
     }
 
-    fn link_up(
-        &mut self,
-        mesh: &Triangulation,
-        all: &[TriangleId],
-        epoch: u32,
-        origin: &mut Origin,
-    ) {
+    fn link_up(&mut self, mesh: &Triangulation, epoch: u32, origin: &mut Origin) {
         origin.outside.clear();
-        origin.places.resize(mesh.slot_count().max(origin.places.len()), 0);
-        for (i, &t) in (0..).zip(all) {
-            origin.places[t.index()] = i;
-        }
-        let places = &origin.places;
+        let places = &origin.triangle_places;
         let place = |t: TriangleId| TriangleId(places[t.index()]);
         let outside = &mut origin.outside;
-        for (i, &t) in (0..).zip(all) {
+        for (i, &t) in (0..).zip(&origin.triangles) {
             for (corner, e) in (0..).zip(t.half_edges()) {
                 let here = TriangleId(i).half_edge(corner);
                 match mesh.across(e) {
@@ -180,27 +146,27 @@ impl Patch {
         }
     }
 
-    /// Smooths and flips to Delaunay; gives up after the first sweep when it is `hopeless`.
+    /// Smooths and flips to Delaunay from where a change was made; gives up after the first sweep
+    /// when it is `hopeless`.
     pub(super) fn relax(&mut self, quantum: Option<f64>, hopeless: f64) {
-        let mut smoother = Smoother::new(&mut self.mesh, &mut self.points, self.fixed, quantum);
-        smoother.sweep();
-        smoother.flip_all();
-        if smoother.excess() > hopeless {
+        let Self { mesh, points, fixed, smoother } = self;
+        let mut sheet = Sheet { mesh, points, fixed: *fixed, quantum };
+        smoother.sweep(&mut sheet);
+        smoother.flip(&mut sheet);
+        if excess(sheet.mesh, sheet.points) > hopeless {
             return;
         }
         for _ in 1..SWEEPS {
-            if smoother.sweep() == 0 {
+            if smoother.sweep(&mut sheet) == 0 {
                 break;
             }
-            smoother.flip();
+            smoother.flip(&mut sheet);
         }
     }
 
     pub(super) fn worth(&self) -> Worth {
         let mut worth = Worth { excess: 0.0, worst: 0.0 };
-        for t in self.mesh.triangles() {
-            let [a, b, c] = self.mesh.corners(t).map(|v| self.points[v.index()]);
-            let f = inverse_mean_ratio(a, b, c);
+        for f in ratios(&self.mesh, &self.points) {
             worth.excess += f * f - 1.0 + BAD_WEIGHT * (f - BAD).max(0.0);
             worth.worst = worth.worst.max(f);
         }
@@ -208,10 +174,12 @@ impl Patch {
     }
 
     fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdgeId> {
-        let mut edges = self.mesh.triangles().flat_map(TriangleId::half_edges);
-        edges.find(|&e| {
-            self.mesh.origin(e) == a && self.mesh.dest(e) == b && !self.mesh.is_constrained(e)
-        })
+        let e = self.mesh.half_edge_to(self.out_of(a)?, b)?;
+        (!self.mesh.is_constrained(e)).then_some(e)
+    }
+
+    fn out_of(&self, v: VertexId) -> Option<HalfEdgeId> {
+        Some(self.smoother.outgoing[v.index()]).filter(|&e| e != NOWHERE)
     }
 
     fn is_ccw(&self, corners: [VertexId; 3]) -> bool {
@@ -226,6 +194,8 @@ impl Patch {
         let convex = self.is_ccw([d, c, a]) && self.is_ccw([c, d, b]);
         if convex {
             self.mesh.flip(e);
+            self.smoother.touch(&self.mesh, e.triangle());
+            self.smoother.touch(&self.mesh, f.triangle());
         }
         convex
     }
@@ -243,7 +213,10 @@ impl Patch {
             self.points.pop();
             return false;
         }
-        self.mesh.split_edge(e, m);
+        self.smoother.push();
+        for outer in self.mesh.split_edge(e, m) {
+            self.smoother.touch(&self.mesh, outer.triangle());
+        }
         true
     }
 
@@ -253,14 +226,7 @@ impl Patch {
         if v.index() < self.fixed {
             return false;
         }
-        let Some(start) = self
-            .mesh
-            .triangles()
-            .flat_map(TriangleId::half_edges)
-            .find(|&e| self.mesh.origin(e) == v)
-        else {
-            return false;
-        };
+        let Some(start) = self.out_of(v) else { return false };
         let star: Vec<HalfEdgeId> = self.mesh.star(start).collect();
         let n = star.len();
         if star.iter().any(|&e| self.mesh.is_constrained(e)) || n < 4 {
@@ -278,6 +244,7 @@ impl Patch {
         for e in &star {
             self.mesh.remove(e.triangle());
         }
+        self.smoother.outgoing[v.index()] = NOWHERE;
         let attach = |mesh: &mut Triangulation, side: HalfEdgeId, i: usize| {
             let (across, constrained) = outer[i % n];
             mesh.relink(side, across);
@@ -294,41 +261,140 @@ impl Patch {
             }
             attach(&mut self.mesh, t.half_edge(1), w + i);
             before = Some(t.half_edge(2));
+            self.smoother.touch(&self.mesh, t);
         }
         attach(&mut self.mesh, before.expect("a polygon of four"), w + n - 1);
         true
     }
 }
 
-/// Triangles within so many rings of a vertex, marked with the epoch; `None` where they are too many.
-fn collect_rings(
-    mesh: &mut Triangulation,
-    start: HalfEdgeId,
-    Cut { rings, epoch, .. }: Cut,
-    triangles: &mut Vec<TriangleId>,
-) -> Option<()> {
-    triangles.clear();
-    let mut ring = vec![start];
-    for _ in 0..rings {
-        let first = triangles.len();
-        for &e in &ring {
-            let star: Vec<TriangleId> = mesh.star(e).map(HalfEdgeId::triangle).collect();
-            for t in star {
-                if mesh.mark(t) != epoch {
-                    mesh.set_mark(t, epoch);
-                    triangles.push(t);
-                }
-            }
-            if triangles.len() > TRIANGLES_MAX {
-                return None;
-            }
-        }
-        ring = triangles[first..].iter().flat_map(|t| t.half_edges()).collect();
-    }
-    Some(())
+fn ratios(mesh: &Triangulation, points: &[Point2]) -> impl Iterator<Item = f64> {
+    mesh.triangles().map(|t| {
+        let [a, b, c] = mesh.corners(t).map(|v| points[v.index()]);
+        inverse_mean_ratio(a, b, c)
+    })
+}
+
+/// Sum of squared inverse mean ratios above 1.
+fn excess(mesh: &Triangulation, points: &[Point2]) -> f64 {
+    ratios(mesh, points).map(|f| f * f - 1.0).sum()
 }
 
 impl Origin {
+    /// Collects the triangles within so many rings of the origin of `start`, marked with the epoch,
+    /// and their vertices: the outline's first, each kind in the order of the mesh. Returns the
+    /// number of vertices on the outline; `None` where the triangles are too many, in several
+    /// regions, or pinch the outline.
+    fn collect(
+        &mut self,
+        mesh: &mut Triangulation,
+        points: usize,
+        start: HalfEdgeId,
+        Cut { rings, epoch, .. }: Cut,
+    ) -> Option<usize> {
+        self.triangle_places.resize(mesh.slot_count().max(self.triangle_places.len()), 0);
+        self.seen.resize(points, 0);
+        self.vertex_places.resize(points, 0);
+        self.tag = mesh.tag(start.triangle());
+        self.triangles.clear();
+        self.vertices.clear();
+        // Vertices whose stars are still to be taken, by a half-edge out of them.
+        let mut ring = vec![start];
+        let mut next = Vec::new();
+        self.find(mesh.origin(start), epoch);
+        for _ in 0..rings {
+            for &e in &ring {
+                self.take_star(mesh, e, epoch, &mut next)?;
+            }
+            ring.clear();
+            std::mem::swap(&mut ring, &mut next);
+        }
+        self.sort_vertices(mesh, epoch)
+    }
+
+    /// Whether a vertex has not been found before.
+    fn find(&mut self, v: VertexId, epoch: u32) -> bool {
+        let is_new = self.seen[v.index()] != epoch;
+        if is_new {
+            self.seen[v.index()] = epoch;
+            self.vertices.push(v);
+        }
+        is_new
+    }
+
+    /// Takes the triangles around the origin of `start`, and lists a half-edge out of each vertex
+    /// that is new.
+    fn take_star(
+        &mut self,
+        mesh: &mut Triangulation,
+        start: HalfEdgeId,
+        epoch: u32,
+        next: &mut Vec<HalfEdgeId>,
+    ) -> Option<()> {
+        let (mut e, mut clockwise) = (start, false);
+        loop {
+            let t = e.triangle();
+            if mesh.mark(t) != epoch {
+                if self.triangles.len() == TRIANGLES_MAX || mesh.tag(t) != self.tag {
+                    return None;
+                }
+                mesh.set_mark(t, epoch);
+                self.triangle_places[t.index()] = self.triangles.len() as u32;
+                self.triangles.push(t);
+                for side in [e.next(), e.prev()] {
+                    if self.find(mesh.origin(side), epoch) {
+                        next.push(side);
+                    }
+                }
+            }
+            let ccw = if clockwise { None } else { mesh.rotate_ccw(e) };
+            match ccw {
+                Some(turned) if turned == start => return Some(()),
+                Some(turned) => e = turned,
+                None => {
+                    let from = if clockwise { e } else { start };
+                    clockwise = true;
+                    match mesh.rotate_cw(from) {
+                        Some(turned) => e = turned,
+                        None => return Some(()),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Orders the vertices found and gives them their places.
+    fn sort_vertices(&mut self, mesh: &Triangulation, epoch: u32) -> Option<usize> {
+        const OUTLINE: u32 = 1;
+        for v in &self.vertices {
+            self.vertex_places[v.index()] = 0;
+        }
+        let mut outline = 0;
+        for e in self.triangles.iter().flat_map(|t| t.half_edges()) {
+            let inside = mesh.twin(e).is_some_and(|twin| mesh.mark(twin.triangle()) == epoch);
+            if !inside {
+                let place = &mut self.vertex_places[mesh.origin(e).index()];
+                if *place == OUTLINE {
+                    return None;
+                }
+                *place = OUTLINE;
+                outline += 1;
+            }
+        }
+        let places = &self.vertex_places;
+        self.vertices.sort_unstable_by_key(|v| (places[v.index()] != OUTLINE, v.0));
+        for (place, v) in (0..).zip(&self.vertices) {
+            self.vertex_places[v.index()] = place;
+        }
+        Some(outline)
+    }
+
+    /// The place of a vertex of the mesh in the patch cut in `epoch`.
+    pub(super) fn place(&self, v: VertexId, epoch: u32) -> Option<VertexId> {
+        let is_there = self.seen.get(v.index()).is_some_and(|&seen| seen == epoch);
+        is_there.then(|| VertexId(self.vertex_places[v.index()]))
+    }
+
     /// Puts a changed patch in the place of its origin: new vertices get new numbers from `push`,
     /// and `touched` is told each new half-edge.
     pub(super) fn replace(
