@@ -5,13 +5,17 @@
 //! it, a vertex moves only where every triangle around it stays strictly counterclockwise.
 //! Vertices of the boundary and of constraints never move.
 
+mod attempt;
 mod defects;
+mod degree;
 mod energy;
 mod flip;
 mod patch;
+mod places;
 mod smooth;
 mod split;
 
+use attempt::Effort;
 use defects::Defects;
 pub use flip::flip_to_delaunay;
 use smooth::{Sheet, Smoother};
@@ -29,6 +33,9 @@ pub struct ImproveOptions {
     pub passes: u32,
     /// Rings of triangles that a try relaxes.
     pub rings: u32,
+    /// Changes in a chain of tries: when none makes things better, the search goes on from the least
+    /// bad one.
+    pub depth: u32,
     /// No more tries than this: the budget counts operations, so that the answer does not depend on
     /// a clock.
     pub tries_max: u64,
@@ -36,17 +43,17 @@ pub struct ImproveOptions {
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
-    pub const NONE: Self = Self { sweeps: 0, passes: 0, rings: 0, tries_max: 0 };
+    pub const NONE: Self = Self { sweeps: 0, passes: 0, rings: 0, depth: 0, tries_max: 0 };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
-    /// more carefully, 3 until nothing gets better. Each level costs some ten times the one before.
+    /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
     #[must_use]
     pub const fn level(level: u8) -> Self {
         match level {
-            0 => Self { sweeps: 4, passes: 0, rings: 0, tries_max: 0 },
-            1 => Self { sweeps: 4, passes: 1, rings: 2, tries_max: 20_000 },
-            2 => Self { sweeps: 4, passes: 2, rings: 3, tries_max: 200_000 },
-            _ => Self { sweeps: 6, passes: 8, rings: 3, tries_max: u64::MAX },
+            0 => Self { sweeps: 4, ..Self::NONE },
+            1 => Self { sweeps: 4, passes: 3, rings: 3, depth: 2, tries_max: 32_000 },
+            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, tries_max: 400_000 },
+            _ => Self { sweeps: 6, passes: 16, rings: 4, depth: 6, tries_max: u64::MAX },
         }
     }
 }
@@ -91,7 +98,8 @@ pub fn improve(
     smooth(mesh, points, fixed, quantum, options.sweeps, &mut stats);
     if options.passes > 0 {
         let mut kept = 0;
-        let mut defects = Defects::new(mesh, points, spacing, fixed, quantum, options.rings);
+        let effort = Effort { rings: options.rings, depth: options.depth };
+        let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort);
         for _ in 0..options.passes {
             let changes = defects.pass(options.tries_max, &mut stats);
             kept += changes;

@@ -90,16 +90,19 @@ fn is_better(v: Point2, link: &[Point2], now: &Energy) -> bool {
     value < now.value && worst <= now.worst
 }
 
-/// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
-const STEP_MIN: f64 = 1e-3;
 /// Newton's step, then halves of it.
 const TRIES: u32 = 3;
 
 /// A place for the vertex `v` in its link that is better and valid, if a step finds one.
-pub(super) fn better_place(v: Point2, link: &[Point2], quantum: Option<f64>) -> Option<Point2> {
+pub(super) fn better_place(
+    v: Point2,
+    link: &[Point2],
+    quantum: Option<f64>,
+    step_min: f64,
+) -> Option<Point2> {
     let now = Energy::of(v, link);
     let [mut dx, mut dy] = now.step()?;
-    let least_sq = STEP_MIN * STEP_MIN * v.distance_sq(link[0]);
+    let least_sq = step_min * step_min * v.distance_sq(link[0]);
     for _ in 0..TRIES {
         if dx * dx + dy * dy < least_sq {
             return None;

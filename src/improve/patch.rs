@@ -1,7 +1,9 @@
 //! A patch: the triangles around a vertex, cut out into a small mesh of their own, where a change of
 //! topology can be tried, relaxed and judged, and thrown away when it was no good.
 
+use super::degree::Degrees;
 use super::energy::inverse_mean_ratio;
+use super::places::Places;
 use super::smooth::{NOWHERE, Sheet, Smoother};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
@@ -16,23 +18,19 @@ pub(super) struct Patch {
     /// Vertices below this index do not move.
     pub(super) fixed: usize,
     smoother: Smoother,
+    /// Vertices around the last change.
+    touched: Vec<VertexId>,
 }
 
 /// Where a patch came from.
 #[derive(Default)]
 pub(super) struct Origin {
     /// The triangles it was cut from, in the order they were found.
-    pub(super) triangles: Vec<TriangleId>,
+    triangles: Vec<TriangleId>,
     /// For each vertex of the patch that of the mesh.
     pub(super) vertices: Vec<VertexId>,
     /// For each border of the patch what lies across it in the mesh.
-    pub(super) outside: Vec<Across>,
-    /// For each triangle of the mesh its place in the patch, valid for those in it.
-    triangle_places: Vec<u32>,
-    /// For each vertex of the mesh the last epoch in which it was found.
-    seen: Vec<u32>,
-    /// And its place in the patch.
-    vertex_places: Vec<u32>,
+    outside: Vec<Across>,
     tag: u32,
 }
 
@@ -53,8 +51,6 @@ pub(super) struct Cut {
     pub(super) rings: u32,
     /// Vertices of the mesh below this index do not move.
     pub(super) fixed: usize,
-    /// Marks the triangles of this patch.
-    pub(super) epoch: u32,
 }
 
 /// A change of topology in a patch.
@@ -84,50 +80,52 @@ impl Patch {
         self.points.clone_from(&other.points);
         self.fixed = other.fixed;
         self.smoother.assign(&other.smoother);
+        self.touched.clone_from(&other.touched);
     }
 
-    /// Becomes the rings of triangles around the origin of `start` in `mesh`; `false` where they are
-    /// too many, in several regions, or pinch the outline.
+    /// Becomes the rings of triangles around a vertex of a mesh, and returns what the vertex is in
+    /// the patch; `None` where they are too many, in several regions, or pinch the outline.
     pub(super) fn cut(
         &mut self,
-        mesh: &mut Triangulation,
-        points: &[Point2],
-        start: HalfEdgeId,
+        Degrees { mesh, points, outgoing }: Degrees<'_>,
+        v: VertexId,
         cut: Cut,
         origin: &mut Origin,
-    ) -> bool {
-        let Some(outline) = origin.collect(mesh, points.len(), start, cut) else { return false };
-        let held = origin.vertices[outline..].partition_point(|v| v.index() < cut.fixed);
+    ) -> Option<VertexId> {
+        let mut found = Found::around(mesh, outgoing[v.index()], cut.rings)?;
+        let outline = found.sort_vertices(mesh)?;
+        origin.tag = mesh.tag(found.triangles[0]);
+        let held = found.vertices[outline..].partition_point(|v| v.index() < cut.fixed);
         self.fixed = outline + held;
         self.points.clear();
-        self.points.extend(origin.vertices.iter().map(|v| points[v.index()]));
+        self.points.extend(found.vertices.iter().map(|v| points[v.index()]));
         self.mesh.clear();
-        for &t in &origin.triangles {
-            let corners = mesh.corners(t).map(|v| VertexId(origin.vertex_places[v.index()]));
-            self.mesh.add(corners);
+        for &t in &found.triangles {
+            let place = |v: VertexId| found.vertex_places.get(v.0).expect("a vertex of the patch");
+            self.mesh.add(mesh.corners(t).map(|v| VertexId(place(v))));
         }
-        self.link_up(mesh, cut.epoch, origin);
+        self.link_up(mesh, &found, &mut origin.outside);
         self.smoother.at_rest(&self.mesh, self.points.len());
-        true
+        self.touched.clear();
+        let here = found.vertex_places.get(v.0).map(VertexId);
+        (origin.triangles, origin.vertices) = (found.triangles, found.vertices);
+        here
     }
 
-    fn link_up(&mut self, mesh: &Triangulation, epoch: u32, origin: &mut Origin) {
-        origin.outside.clear();
-        let places = &origin.triangle_places;
-        let place = |t: TriangleId| TriangleId(places[t.index()]);
-        let outside = &mut origin.outside;
-        for (i, &t) in (0..).zip(&origin.triangles) {
+    fn link_up(&mut self, mesh: &Triangulation, found: &Found, outside: &mut Vec<Across>) {
+        for (i, &t) in (0..).zip(&found.triangles) {
             for (corner, e) in (0..).zip(t.half_edges()) {
                 let here = TriangleId(i).half_edge(corner);
-                match mesh.across(e) {
-                    Across::Twin(twin) if mesh.mark(twin.triangle()) == epoch => {
+                let across = mesh.across(e);
+                match (across, found.inside(across)) {
+                    (Across::Twin(twin), Some(place)) => {
                         if e < twin {
-                            let there = place(twin.triangle()).half_edge(twin.corner() as u32);
+                            let there = TriangleId(place).half_edge(twin.corner() as u32);
                             self.mesh.link(here, there);
                             self.mesh.set_constrained(here, mesh.is_constrained(e));
                         }
                     }
-                    across => {
+                    _ => {
                         self.mesh.set_border(here, outside.len() as u32);
                         // A constraint on the outline stays one: remembered with what lies across.
                         outside.push(across);
@@ -139,6 +137,7 @@ impl Patch {
 
     /// Makes a change; `false` when it cannot be made.
     pub(super) fn make(&mut self, change: Change) -> bool {
+        self.touched.clear();
         match change {
             Change::Flip(a, b) => self.edge(a, b).is_some_and(|e| self.flip(e)),
             Change::Remove(v) => self.remove(v),
@@ -149,7 +148,7 @@ impl Patch {
     /// Smooths and flips to Delaunay from where a change was made; gives up after the first sweep
     /// when it is `hopeless`.
     pub(super) fn relax(&mut self, quantum: Option<f64>, hopeless: f64) {
-        let Self { mesh, points, fixed, smoother } = self;
+        let Self { mesh, points, fixed, smoother, .. } = self;
         let mut sheet = Sheet { mesh, points, fixed: *fixed, quantum };
         smoother.sweep(&mut sheet);
         smoother.flip(&mut sheet);
@@ -160,8 +159,13 @@ impl Patch {
             if smoother.sweep(&mut sheet) == 0 {
                 break;
             }
-            smoother.flip(&mut sheet);
         }
+        smoother.flip(&mut sheet);
+    }
+
+    /// Vertices around the last change, some of them more than once.
+    pub(super) fn touched(&self) -> &[VertexId] {
+        &self.touched
     }
 
     pub(super) fn worth(&self) -> Worth {
@@ -171,6 +175,17 @@ impl Patch {
             worth.worst = worth.worst.max(f);
         }
         worth
+    }
+
+    /// Adds the changes worth trying around a vertex.
+    pub(super) fn changes(&self, v: VertexId, list: &mut Vec<Change>) {
+        let outgoing = &self.smoother.outgoing;
+        Degrees { mesh: &self.mesh, points: &self.points, outgoing }.changes(v, list);
+    }
+
+    fn touch(&mut self, t: TriangleId) {
+        self.touched.extend(self.mesh.corners(t));
+        self.smoother.touch(&self.mesh, t);
     }
 
     fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdgeId> {
@@ -194,8 +209,8 @@ impl Patch {
         let convex = self.is_ccw([d, c, a]) && self.is_ccw([c, d, b]);
         if convex {
             self.mesh.flip(e);
-            self.smoother.touch(&self.mesh, e.triangle());
-            self.smoother.touch(&self.mesh, f.triangle());
+            self.touch(e.triangle());
+            self.touch(f.triangle());
         }
         convex
     }
@@ -215,7 +230,7 @@ impl Patch {
         }
         self.smoother.push();
         for outer in self.mesh.split_edge(e, m) {
-            self.smoother.touch(&self.mesh, outer.triangle());
+            self.touch(outer.triangle());
         }
         true
     }
@@ -261,7 +276,7 @@ impl Patch {
             }
             attach(&mut self.mesh, t.half_edge(1), w + i);
             before = Some(t.half_edge(2));
-            self.smoother.touch(&self.mesh, t);
+            self.touch(t);
         }
         attach(&mut self.mesh, before.expect("a polygon of four"), w + n - 1);
         true
@@ -280,121 +295,104 @@ fn excess(mesh: &Triangulation, points: &[Point2]) -> f64 {
     ratios(mesh, points).map(|f| f * f - 1.0).sum()
 }
 
-impl Origin {
-    /// Collects the triangles within so many rings of the origin of `start`, marked with the epoch,
-    /// and their vertices: the outline's first, each kind in the order of the mesh. Returns the
-    /// number of vertices on the outline; `None` where the triangles are too many, in several
-    /// regions, or pinch the outline.
-    fn collect(
-        &mut self,
-        mesh: &mut Triangulation,
-        points: usize,
-        start: HalfEdgeId,
-        Cut { rings, epoch, .. }: Cut,
-    ) -> Option<usize> {
-        self.triangle_places.resize(mesh.slot_count().max(self.triangle_places.len()), 0);
-        self.seen.resize(points, 0);
-        self.vertex_places.resize(points, 0);
-        self.tag = mesh.tag(start.triangle());
-        self.triangles.clear();
-        self.vertices.clear();
+/// The triangles and vertices of a patch in the mesh.
+struct Found {
+    triangles: Vec<TriangleId>,
+    vertices: Vec<VertexId>,
+    triangle_places: Places,
+    vertex_places: Places,
+}
+
+impl Found {
+    /// The triangles within so many rings of the origin of `start`; `None` where they are too many or
+    /// in several regions.
+    fn around(mesh: &Triangulation, start: HalfEdgeId, rings: u32) -> Option<Self> {
+        if start == NOWHERE {
+            return None;
+        }
+        let mut found = Self {
+            triangles: Vec::with_capacity(96),
+            vertices: Vec::with_capacity(64),
+            triangle_places: Places::default(),
+            vertex_places: Places::default(),
+        };
+        found.find(mesh.origin(start));
         // Vertices whose stars are still to be taken, by a half-edge out of them.
         let mut ring = vec![start];
         let mut next = Vec::new();
-        self.find(mesh.origin(start), epoch);
         for _ in 0..rings {
             for &e in &ring {
-                self.take_star(mesh, e, epoch, &mut next)?;
+                for spoke in mesh.star(e) {
+                    found.take(mesh, spoke, &mut next)?;
+                }
             }
             ring.clear();
             std::mem::swap(&mut ring, &mut next);
         }
-        self.sort_vertices(mesh, epoch)
+        Some(found)
+    }
+
+    /// Takes the triangle of a half-edge, and lists a half-edge out of each vertex that is new.
+    fn take(
+        &mut self,
+        mesh: &Triangulation,
+        e: HalfEdgeId,
+        next: &mut Vec<HalfEdgeId>,
+    ) -> Option<()> {
+        let t = e.triangle();
+        if self.triangle_places.insert(t.0, self.triangles.len() as u32) {
+            self.triangles.push(t);
+            if self.triangles.len() > TRIANGLES_MAX || mesh.tag(t) != mesh.tag(self.triangles[0]) {
+                return None;
+            }
+            for side in [e.next(), e.prev()] {
+                if self.find(mesh.origin(side)) {
+                    next.push(side);
+                }
+            }
+        }
+        Some(())
     }
 
     /// Whether a vertex has not been found before.
-    fn find(&mut self, v: VertexId, epoch: u32) -> bool {
-        let is_new = self.seen[v.index()] != epoch;
+    fn find(&mut self, v: VertexId) -> bool {
+        let is_new = self.vertex_places.insert(v.0, 0);
         if is_new {
-            self.seen[v.index()] = epoch;
             self.vertices.push(v);
         }
         is_new
     }
 
-    /// Takes the triangles around the origin of `start`, and lists a half-edge out of each vertex
-    /// that is new.
-    fn take_star(
-        &mut self,
-        mesh: &mut Triangulation,
-        start: HalfEdgeId,
-        epoch: u32,
-        next: &mut Vec<HalfEdgeId>,
-    ) -> Option<()> {
-        let (mut e, mut clockwise) = (start, false);
-        loop {
-            let t = e.triangle();
-            if mesh.mark(t) != epoch {
-                if self.triangles.len() == TRIANGLES_MAX || mesh.tag(t) != self.tag {
-                    return None;
-                }
-                mesh.set_mark(t, epoch);
-                self.triangle_places[t.index()] = self.triangles.len() as u32;
-                self.triangles.push(t);
-                for side in [e.next(), e.prev()] {
-                    if self.find(mesh.origin(side), epoch) {
-                        next.push(side);
-                    }
-                }
-            }
-            let ccw = if clockwise { None } else { mesh.rotate_ccw(e) };
-            match ccw {
-                Some(turned) if turned == start => return Some(()),
-                Some(turned) => e = turned,
-                None => {
-                    let from = if clockwise { e } else { start };
-                    clockwise = true;
-                    match mesh.rotate_cw(from) {
-                        Some(turned) => e = turned,
-                        None => return Some(()),
-                    }
-                }
-            }
+    /// The place of the triangle across an edge, if that is in the patch.
+    fn inside(&self, across: Across) -> Option<u32> {
+        match across {
+            Across::Twin(twin) => self.triangle_places.get(twin.triangle().0),
+            Across::Border(_) => None,
         }
     }
 
-    /// Orders the vertices found and gives them their places.
-    fn sort_vertices(&mut self, mesh: &Triangulation, epoch: u32) -> Option<usize> {
-        const OUTLINE: u32 = 1;
-        for v in &self.vertices {
-            self.vertex_places[v.index()] = 0;
-        }
-        let mut outline = 0;
+    /// Orders the vertices, the outline's first, each kind as in the mesh, and gives them their
+    /// places; returns the number on the outline, `None` where that is pinched.
+    fn sort_vertices(&mut self, mesh: &Triangulation) -> Option<usize> {
+        let mut outline: Vec<VertexId> = Vec::with_capacity(32);
         for e in self.triangles.iter().flat_map(|t| t.half_edges()) {
-            let inside = mesh.twin(e).is_some_and(|twin| mesh.mark(twin.triangle()) == epoch);
-            if !inside {
-                let place = &mut self.vertex_places[mesh.origin(e).index()];
-                if *place == OUTLINE {
-                    return None;
-                }
-                *place = OUTLINE;
-                outline += 1;
+            if self.inside(mesh.across(e)).is_none() {
+                outline.push(mesh.origin(e));
             }
         }
-        let places = &self.vertex_places;
-        self.vertices.sort_unstable_by_key(|v| (places[v.index()] != OUTLINE, v.0));
-        for (place, v) in (0..).zip(&self.vertices) {
-            self.vertex_places[v.index()] = place;
+        outline.sort_unstable();
+        if outline.windows(2).any(|pair| pair[0] == pair[1]) {
+            return None;
         }
-        Some(outline)
+        self.vertices.sort_unstable_by_key(|v| (outline.binary_search(v).is_err(), *v));
+        for (place, v) in (0..).zip(&self.vertices) {
+            self.vertex_places.set(v.0, place);
+        }
+        Some(outline.len())
     }
+}
 
-    /// The place of a vertex of the mesh in the patch cut in `epoch`.
-    pub(super) fn place(&self, v: VertexId, epoch: u32) -> Option<VertexId> {
-        let is_there = self.seen.get(v.index()).is_some_and(|&seen| seen == epoch);
-        is_there.then(|| VertexId(self.vertex_places[v.index()]))
-    }
-
+impl Origin {
     /// Puts a changed patch in the place of its origin: new vertices get new numbers from `push`,
     /// and `touched` is told each new half-edge.
     pub(super) fn replace(

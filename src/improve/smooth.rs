@@ -8,6 +8,11 @@ use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 /// No half-edge.
 pub(super) const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
 
+/// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
+const STEP_MIN: f64 = 1e-3;
+/// The same while a change is on trial, when it only has to be told from others.
+const STEP_MIN_TRIAL: f64 = 2e-2;
+
 /// The mesh under improvement.
 pub(super) struct Sheet<'a> {
     pub(super) mesh: &'a mut Triangulation,
@@ -25,7 +30,14 @@ pub(super) struct Smoother {
     pub(super) outgoing: Vec<HalfEdgeId>,
     /// Vertices whose star has changed since they were last looked at.
     active: Vec<bool>,
-    suspects: Vec<HalfEdgeId>,
+    /// Triangles whose edges may be not Delaunay any more.
+    suspects: Vec<TriangleId>,
+    /// For each triangle whether it is a suspect.
+    suspected: Vec<bool>,
+    /// Scratch space of [`flip`](Self::flip).
+    edges: Vec<HalfEdgeId>,
+    /// Least step of a move over the distance to a neighbour.
+    step_min: f64,
     link: Vec<Point2>,
     link_vertices: Vec<VertexId>,
 }
@@ -33,7 +45,8 @@ pub(super) struct Smoother {
 impl Smoother {
     /// For a mesh of so many vertices, all of them active.
     pub(super) fn new(mesh: &Triangulation, vertices: usize) -> Self {
-        let mut smoother = Self { active: vec![true; vertices], ..Self::default() };
+        let mut smoother = Self { active: vec![true; vertices], step_min: STEP_MIN, ..Self::default() };
+        smoother.suspected.resize(mesh.slot_count(), false);
         smoother.find_outgoing(mesh, vertices);
         smoother
     }
@@ -43,6 +56,9 @@ impl Smoother {
         self.active.clear();
         self.active.resize(vertices, false);
         self.suspects.clear();
+        self.suspected.clear();
+        self.suspected.resize(mesh.slot_count(), false);
+        self.step_min = STEP_MIN_TRIAL;
         self.find_outgoing(mesh, vertices);
     }
 
@@ -51,6 +67,8 @@ impl Smoother {
         self.outgoing.clone_from(&other.outgoing);
         self.active.clone_from(&other.active);
         self.suspects.clone_from(&other.suspects);
+        self.suspected.clone_from(&other.suspected);
+        self.step_min = other.step_min;
     }
 
     /// A new vertex in no triangle.
@@ -65,16 +83,21 @@ impl Smoother {
             let v = mesh.origin(e).index();
             self.outgoing[v] = e;
             self.active[v] = true;
-            self.suspects.push(e);
+        }
+        self.suspect(t);
+    }
+
+    fn suspect(&mut self, t: TriangleId) {
+        if t.index() >= self.suspected.len() {
+            self.suspected.resize(t.index() + 1, false);
+        }
+        if !std::mem::replace(&mut self.suspected[t.index()], true) {
+            self.suspects.push(t);
         }
     }
 
     fn find_outgoing(&mut self, mesh: &Triangulation, vertices: usize) {
-        self.outgoing.clear();
-        self.outgoing.resize(vertices, NOWHERE);
-        for e in mesh.triangles().flat_map(TriangleId::half_edges) {
-            self.outgoing[mesh.origin(e).index()] = e;
-        }
+        find_outgoing(mesh, vertices, &mut self.outgoing);
     }
 
     /// One sweep over the active vertices in index order; returns the number of moves. Edges that
@@ -92,7 +115,7 @@ impl Smoother {
             if start == NOWHERE || !self.gather_link(sheet, start) {
                 continue;
             }
-            if let Some(place) = better_place(sheet.points[v], &self.link, sheet.quantum) {
+            if let Some(place) = better_place(sheet.points[v], &self.link, sheet.quantum, self.step_min) {
                 sheet.points[v] = place;
                 moves += 1;
                 self.active[v] = true;
@@ -107,16 +130,25 @@ impl Smoother {
 
     /// All edges of the mesh are flipped to Delaunay: for the first time, when all are suspect.
     pub(super) fn flip_all(&mut self, sheet: &mut Sheet<'_>) -> u64 {
-        self.suspects.clear();
+        self.forget_suspects();
         let flips = flip_to_delaunay(sheet.mesh, sheet.points);
         self.find_outgoing(sheet.mesh, sheet.points.len());
         flips
     }
 
-    /// Flips the suspect edges.
+    /// Flips the edges of suspect triangles to Delaunay.
     pub(super) fn flip(&mut self, sheet: &mut Sheet<'_>) -> u64 {
+        let Sheet { mesh, points, .. } = sheet;
+        self.edges.clear();
+        for &t in self.suspects.iter().filter(|&&t| mesh.is_live(t)) {
+            // An edge between two suspects once, from the side with the smaller half-edge.
+            self.edges.extend(t.half_edges().into_iter().filter(|&e| {
+                mesh.twin(e).is_some_and(|f| e < f || !self.suspected[f.triangle().index()])
+            }));
+        }
+        self.forget_suspects();
         let (outgoing, active) = (&mut self.outgoing, &mut self.active);
-        flip_suspects(sheet.mesh, sheet.points, &mut self.suspects, |mesh, e| {
+        flip_suspects(mesh, points, &mut self.edges, |mesh, e| {
             let f = mesh.twin(e).expect("a flipped edge has two sides");
             for g in [e, e.next(), e.prev(), f.prev()] {
                 let v = mesh.origin(g).index();
@@ -126,10 +158,16 @@ impl Smoother {
         })
     }
 
+    fn forget_suspects(&mut self) {
+        for t in self.suspects.drain(..) {
+            self.suspected[t.index()] = false;
+        }
+    }
+
     fn suspect_star(&mut self, mesh: &Triangulation, start: HalfEdgeId) {
         let mut e = start;
         loop {
-            self.suspects.extend([e, e.next()]);
+            self.suspect(e.triangle());
             match mesh.rotate_ccw(e) {
                 Some(next) if next != start => e = next,
                 _ => return,
@@ -152,5 +190,20 @@ impl Smoother {
                 Some(next) => e = next,
             }
         }
+    }
+}
+
+/// A half-edge out of each vertex, [`NOWHERE`] for one in no triangle.
+pub(super) fn outgoing(mesh: &Triangulation, vertices: usize) -> Vec<HalfEdgeId> {
+    let mut outgoing = Vec::new();
+    find_outgoing(mesh, vertices, &mut outgoing);
+    outgoing
+}
+
+fn find_outgoing(mesh: &Triangulation, vertices: usize, outgoing: &mut Vec<HalfEdgeId>) {
+    outgoing.clear();
+    outgoing.resize(vertices, NOWHERE);
+    for e in mesh.triangles().flat_map(TriangleId::half_edges) {
+        outgoing[mesh.origin(e).index()] = e;
     }
 }
