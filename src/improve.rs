@@ -51,7 +51,7 @@ impl ImproveOptions {
     pub const fn level(level: u8) -> Self {
         match level {
             0 => Self { sweeps: 4, ..Self::NONE },
-            1 => Self { sweeps: 4, passes: 3, rings: 3, depth: 2, tries_max: 32_000 },
+            1 => Self { sweeps: 4, passes: 5, rings: 3, depth: 2, tries_max: 64_000 },
             2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, tries_max: 400_000 },
             _ => Self { sweeps: 6, passes: 16, rings: 4, depth: 6, tries_max: u64::MAX },
         }
@@ -95,44 +95,40 @@ pub fn improve(
     options: ImproveOptions,
 ) -> ImproveStats {
     let mut stats = ImproveStats::default();
-    smooth(mesh, points, fixed, quantum, options.sweeps, &mut stats);
-    if options.passes > 0 {
-        let mut kept = 0;
-        let effort = Effort { rings: options.rings, depth: options.depth };
-        let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort);
-        for _ in 0..options.passes {
-            let changes = defects.pass(options.tries_max, &mut stats);
-            kept += changes;
-            if changes == 0 {
-                break;
-            }
+    let mut smoother = Smoother::new(mesh, points.len());
+    let mut sheet = Sheet { mesh, points, fixed, quantum };
+    if options.sweeps > 0 {
+        stats.moves += smoother.sweep(&mut sheet);
+    }
+    stats.flips += smoother.flip_all(&mut sheet);
+    settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
+    if options.passes == 0 || options.depth == 0 {
+        return stats;
+    }
+    let effort = Effort { rings: options.rings, depth: options.depth };
+    let outgoing = smoother.outgoing;
+    let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
+    for _ in 0..options.passes {
+        if defects.pass(options.tries_max, &mut stats) == 0 {
+            break;
         }
-        if kept > 0 {
-            smooth(mesh, points, fixed, quantum, options.sweeps, &mut stats);
-        }
+    }
+    if stats.changes > 0 {
+        let mut smoother = defects.into_smoother();
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        stats.moves += smoother.sweep(&mut sheet);
+        stats.flips += smoother.flip(&mut sheet);
+        settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
     }
     stats
 }
 
-/// Sweeps of smoothing, each followed by flips.
-fn smooth(
-    mesh: &mut Triangulation,
-    points: &mut [Point2],
-    fixed: usize,
-    quantum: Option<f64>,
-    sweeps: u32,
-    stats: &mut ImproveStats,
-) {
-    let mut smoother = Smoother::new(mesh, points.len());
-    let mut sheet = Sheet { mesh, points, fixed, quantum };
-    if sweeps > 0 {
-        stats.moves += smoother.sweep(&mut sheet);
-    }
-    stats.flips += smoother.flip_all(&mut sheet);
+/// Sweeps of smoothing after the first, each followed by flips.
+fn settle(smoother: &mut Smoother, sheet: &mut Sheet<'_>, sweeps: u32, stats: &mut ImproveStats) {
     for _ in 1..sweeps {
-        let moves = smoother.sweep(&mut sheet);
+        let moves = smoother.sweep(sheet);
         stats.moves += moves;
-        stats.flips += smoother.flip(&mut sheet);
+        stats.flips += smoother.flip(sheet);
         if moves == 0 {
             break;
         }

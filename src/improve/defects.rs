@@ -8,7 +8,7 @@ use super::ImproveStats;
 use super::attempt::{Attempt, Effort, Searcher, View};
 use super::degree::Degrees;
 use super::patch::{Origin, Patch};
-use super::smooth::{NOWHERE, outgoing};
+use super::smooth::{NOWHERE, Smoother};
 use crate::point::Point2;
 use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
 use rayon::prelude::*;
@@ -34,6 +34,8 @@ pub(super) struct Defects<'a> {
     active: Vec<bool>,
     /// Vertices around which something has changed in this batch.
     changed: Vec<bool>,
+    /// And in any batch.
+    unsettled: Vec<bool>,
 }
 
 impl<'a> Defects<'a> {
@@ -43,18 +45,24 @@ impl<'a> Defects<'a> {
         fixed: usize,
         quantum: Option<f64>,
         effort: Effort,
+        outgoing: Vec<HalfEdgeId>,
     ) -> Self {
-        let outgoing = outgoing(mesh, points.len());
         let active = vec![true; points.len()];
         let changed = vec![false; points.len()];
-        Self { mesh, points, spacing, fixed, quantum, effort, outgoing, active, changed }
+        let unsettled = changed.clone();
+        Self { mesh, points, spacing, fixed, quantum, effort, outgoing, active, changed, unsettled }
+    }
+
+    /// What is left to smooth: wherever something has changed.
+    pub(super) fn into_smoother(self) -> Smoother {
+        Smoother::from_parts(self.mesh, self.outgoing, self.unsettled)
     }
 
     /// One pass over the irregular vertices and those with bad triangles, worst first; ends before
     /// more than `budget` changes have been tried in all, and returns the number of changes kept.
     pub(super) fn pass(&mut self, budget: u64, stats: &mut ImproveStats) -> u64 {
         let before = stats.changes;
-        let list = self.worst_first();
+        let list = self.worst_first(stats.tried == 0);
         for batch in list.chunks(BATCH) {
             if !self.batch(batch, budget, stats) {
                 break;
@@ -99,17 +107,22 @@ impl<'a> Defects<'a> {
     }
 
     fn view(&self) -> View<'_> {
-        let degrees =
-            Degrees { mesh: self.mesh, points: self.points, outgoing: &self.outgoing };
+        let degrees = Degrees { mesh: self.mesh, points: self.points, outgoing: &self.outgoing };
         View { degrees, fixed: self.fixed, quantum: self.quantum, effort: self.effort }
     }
 
     /// Active vertices worth trying, by the worst triangle around them, then by index.
-    fn worst_first(&self) -> Vec<VertexId> {
+    fn worst_first(&self, is_first: bool) -> Vec<VertexId> {
         let degrees = self.view().degrees;
         let active = (self.fixed..self.points.len()).filter(|&v| self.active[v]);
-        let mut found: Vec<(f64, VertexId)> = active
-            .map(|v| VertexId(v as u32))
+        let candidates: Vec<VertexId> = if is_first {
+            let irregular = degrees.irregular();
+            active.filter(|&v| irregular[v]).map(|v| VertexId(v as u32)).collect()
+        } else {
+            active.map(|v| VertexId(v as u32)).collect()
+        };
+        let mut found: Vec<(f64, VertexId)> = candidates
+            .into_iter()
             .filter_map(|v| degrees.defect(v).map(|worst| (worst, v)))
             .collect();
         found.sort_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
@@ -122,7 +135,8 @@ impl<'a> Defects<'a> {
             self.outgoing[v.index()] = NOWHERE;
         }
         // Sums of floats depend on their order: by size is an order that all inputs share.
-        let mut around: Vec<f64> = origin.vertices.iter().map(|v| self.spacing[v.index()]).collect();
+        let mut around: Vec<f64> =
+            origin.vertices.iter().map(|v| self.spacing[v.index()]).collect();
         around.sort_by(f64::total_cmp);
         let mean = around.iter().sum::<f64>() / around.len() as f64;
         let (points, spacing) = (&mut *self.points, &mut *self.spacing);
@@ -136,12 +150,14 @@ impl<'a> Defects<'a> {
         self.outgoing.resize(self.points.len(), NOWHERE);
         self.active.resize(self.points.len(), true);
         self.changed.resize(self.points.len(), true);
+        self.unsettled.resize(self.points.len(), true);
         for (v, e) in new {
             self.outgoing[v.index()] = e;
         }
         for v in &origin.vertices {
             self.active[v.index()] = true;
             self.changed[v.index()] = true;
+            self.unsettled[v.index()] = true;
         }
     }
 }

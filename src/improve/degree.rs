@@ -29,6 +29,23 @@ impl Degrees<'_> {
         (worst > BAD || self.degree(start) != Some(REGULAR)).then_some(worst)
     }
 
+    /// For each vertex whether it may have a defect: all at once, in the order of the triangles.
+    pub(super) fn irregular(&self) -> Vec<bool> {
+        // Six triangles, none of them bad; more than 127 are not told from each other.
+        const IS_BAD: u8 = 128;
+        let mut counts = vec![0_u8; self.points.len()];
+        for t in self.mesh.triangles() {
+            let corners = self.mesh.corners(t);
+            let [a, b, c] = corners.map(|v| self.points[v.index()]);
+            let bad = if inverse_mean_ratio(a, b, c) > BAD { IS_BAD } else { 0 };
+            for v in corners {
+                let count = &mut counts[v.index()];
+                *count = ((*count & !IS_BAD) + 1).min(IS_BAD - 1) | (*count & IS_BAD) | bad;
+            }
+        }
+        counts.into_iter().map(|count| usize::from(count) != REGULAR).collect()
+    }
+
     /// Adds the changes worth trying around a vertex that are not in the list yet.
     pub(super) fn changes(&self, v: VertexId, list: &mut Vec<Change>) {
         let Some(start) = self.out_of(v) else { return };

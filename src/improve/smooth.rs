@@ -45,9 +45,27 @@ pub(super) struct Smoother {
 impl Smoother {
     /// For a mesh of so many vertices, all of them active.
     pub(super) fn new(mesh: &Triangulation, vertices: usize) -> Self {
-        let mut smoother = Self { active: vec![true; vertices], step_min: STEP_MIN, ..Self::default() };
+        let mut smoother =
+            Self { active: vec![true; vertices], step_min: STEP_MIN, ..Self::default() };
         smoother.suspected.resize(mesh.slot_count(), false);
         smoother.find_outgoing(mesh, vertices);
+        smoother
+    }
+
+    /// For a mesh with a half-edge out of each vertex; triangles at active vertices are suspect.
+    pub(super) fn from_parts(
+        mesh: &Triangulation,
+        outgoing: Vec<HalfEdgeId>,
+        active: Vec<bool>,
+    ) -> Self {
+        let suspected = vec![false; mesh.slot_count()];
+        let step_min = STEP_MIN;
+        let mut smoother = Self { outgoing, active, suspected, step_min, ..Self::default() };
+        for t in mesh.triangles() {
+            if mesh.corners(t).iter().any(|v| smoother.active[v.index()]) {
+                smoother.suspect(t);
+            }
+        }
         smoother
     }
 
@@ -115,7 +133,9 @@ impl Smoother {
             if start == NOWHERE || !self.gather_link(sheet, start) {
                 continue;
             }
-            if let Some(place) = better_place(sheet.points[v], &self.link, sheet.quantum, self.step_min) {
+            if let Some(place) =
+                better_place(sheet.points[v], &self.link, sheet.quantum, self.step_min)
+            {
                 sheet.points[v] = place;
                 moves += 1;
                 self.active[v] = true;
@@ -132,7 +152,9 @@ impl Smoother {
     pub(super) fn flip_all(&mut self, sheet: &mut Sheet<'_>) -> u64 {
         self.forget_suspects();
         let flips = flip_to_delaunay(sheet.mesh, sheet.points);
-        self.find_outgoing(sheet.mesh, sheet.points.len());
+        if flips > 0 {
+            self.find_outgoing(sheet.mesh, sheet.points.len());
+        }
         flips
     }
 
@@ -194,12 +216,6 @@ impl Smoother {
 }
 
 /// A half-edge out of each vertex, [`NOWHERE`] for one in no triangle.
-pub(super) fn outgoing(mesh: &Triangulation, vertices: usize) -> Vec<HalfEdgeId> {
-    let mut outgoing = Vec::new();
-    find_outgoing(mesh, vertices, &mut outgoing);
-    outgoing
-}
-
 fn find_outgoing(mesh: &Triangulation, vertices: usize, outgoing: &mut Vec<HalfEdgeId>) {
     outgoing.clear();
     outgoing.resize(vertices, NOWHERE);
