@@ -3,7 +3,8 @@
 //!     cargo bench --bench mesher
 //!     cargo bench --bench mesher -- quality [LEVEL]     table of quality over fourteen domains
 //!     cargo bench --bench mesher -- worst               the worst cases, each checked
-//!     cargo bench --bench mesher -- growth [SIDE]       time over size, squares up to SIDE segments
+//!     cargo bench --bench mesher -- growth [SIDE]       time and memory over size, squares up to SIDE
+//!                                                       segments a side, beside spade
 
 #[path = "domains/mod.rs"]
 mod domains;
@@ -140,7 +141,7 @@ fn main() {
     match arguments.first().map(String::as_str) {
         Some("quality") => tables::quality(number(1).min(3) as u8),
         Some("worst") => tables::worst(),
-        Some("growth") => tables::growth(number(1000)),
+        Some("growth") => tables::growth(number(2080), spade_refinement),
         _ => {
             benches();
             Criterion::default().configure_from_args().final_summary();

@@ -5,15 +5,20 @@
 //! it, a vertex moves only where every triangle around it stays strictly counterclockwise.
 //! Vertices of the boundary and of constraints never move.
 
+mod attempt;
 mod defects;
+mod degree;
+mod energy;
 mod flip;
 mod patch;
+mod places;
 mod smooth;
 mod split;
 
+use attempt::Effort;
 use defects::Defects;
 pub use flip::flip_to_delaunay;
-use smooth::Smoother;
+use smooth::{Sheet, Smoother};
 pub use split::{SplitOptions, split_long_edges};
 
 use crate::point::Point2;
@@ -28,6 +33,9 @@ pub struct ImproveOptions {
     pub passes: u32,
     /// Rings of triangles that a try relaxes.
     pub rings: u32,
+    /// Changes in a chain of tries: when none makes things better, the search goes on from the least
+    /// bad one.
+    pub depth: u32,
     /// No more tries than this: the budget counts operations, so that the answer does not depend on
     /// a clock.
     pub tries_max: u64,
@@ -35,17 +43,17 @@ pub struct ImproveOptions {
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
-    pub const NONE: Self = Self { sweeps: 0, passes: 0, rings: 0, tries_max: 0 };
+    pub const NONE: Self = Self { sweeps: 0, passes: 0, rings: 0, depth: 0, tries_max: 0 };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
-    /// more carefully, 3 until nothing gets better. Each level costs some ten times the one before.
+    /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
     #[must_use]
     pub const fn level(level: u8) -> Self {
         match level {
-            0 => Self { sweeps: 4, passes: 0, rings: 0, tries_max: 0 },
-            1 => Self { sweeps: 4, passes: 1, rings: 2, tries_max: 20_000 },
-            2 => Self { sweeps: 4, passes: 2, rings: 3, tries_max: 200_000 },
-            _ => Self { sweeps: 6, passes: 8, rings: 3, tries_max: u64::MAX },
+            0 => Self { sweeps: 4, ..Self::NONE },
+            1 => Self { sweeps: 4, passes: 5, rings: 3, depth: 2, tries_max: 64_000 },
+            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, tries_max: 400_000 },
+            _ => Self { sweeps: 6, passes: 16, rings: 4, depth: 6, tries_max: u64::MAX },
         }
     }
 }
@@ -87,42 +95,40 @@ pub fn improve(
     options: ImproveOptions,
 ) -> ImproveStats {
     let mut stats = ImproveStats::default();
-    smooth(mesh, points, fixed, quantum, options.sweeps, &mut stats);
-    if options.passes > 0 {
-        let mut kept = 0;
-        let mut defects = Defects::new(mesh, points, spacing, fixed, quantum, options.rings);
-        for _ in 0..options.passes {
-            let changes = defects.pass(options.tries_max, &mut stats);
-            kept += changes;
-            if changes == 0 {
-                break;
-            }
+    let mut smoother = Smoother::new(mesh, points.len());
+    let mut sheet = Sheet { mesh, points, fixed, quantum };
+    if options.sweeps > 0 {
+        stats.moves += smoother.sweep(&mut sheet);
+    }
+    stats.flips += smoother.flip_all(&mut sheet);
+    settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
+    if options.passes == 0 || options.depth == 0 {
+        return stats;
+    }
+    let effort = Effort { rings: options.rings, depth: options.depth };
+    let outgoing = smoother.outgoing;
+    let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
+    for _ in 0..options.passes {
+        if defects.pass(options.tries_max, &mut stats) == 0 {
+            break;
         }
-        if kept > 0 {
-            smooth(mesh, points, fixed, quantum, options.sweeps, &mut stats);
-        }
+    }
+    if stats.changes > 0 {
+        let mut smoother = defects.into_smoother();
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        stats.moves += smoother.sweep(&mut sheet);
+        stats.flips += smoother.flip(&mut sheet);
+        settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
     }
     stats
 }
 
-/// Sweeps of smoothing, each followed by flips.
-fn smooth(
-    mesh: &mut Triangulation,
-    points: &mut [Point2],
-    fixed: usize,
-    quantum: Option<f64>,
-    sweeps: u32,
-    stats: &mut ImproveStats,
-) {
-    let mut smoother = Smoother::new(mesh, points, fixed, quantum);
-    if sweeps > 0 {
-        stats.moves += smoother.sweep();
-    }
-    stats.flips += smoother.flip_all();
+/// Sweeps of smoothing after the first, each followed by flips.
+fn settle(smoother: &mut Smoother, sheet: &mut Sheet<'_>, sweeps: u32, stats: &mut ImproveStats) {
     for _ in 1..sweeps {
-        let moves = smoother.sweep();
+        let moves = smoother.sweep(sheet);
         stats.moves += moves;
-        stats.flips += smoother.flip();
+        stats.flips += smoother.flip(sheet);
         if moves == 0 {
             break;
         }

@@ -223,6 +223,7 @@ fn split_boundary(
     }
     let split_options = subdivide::SplitOptions {
         growth: options.growth,
+        spacing: options.spacing.map(|h| scale.shrink_length(h)),
         points_max: options.triangles_max,
         quantum: scale.quantum(),
     };

@@ -2,7 +2,7 @@
 //!
 //! A growth-limited field is made of the shorter of the edges at each boundary point and of the
 //! distances across gaps, which the constrained Delaunay triangulation of the boundary knows; each
-//! segment is cut into parts that follow the field, and then halved until no edge is more than
+//! segment is cut into parts that follow the field, or a uniform bound where that is less, and then halved until no edge is more than
 //! twice as long as a neighbour. Nothing is moved: new points lie on their segment, but for their
 //! rounding, and only where the exact signs say that no other segment is in the way.
 
@@ -19,6 +19,8 @@ use crate::triangulation::{HalfEdgeId, VertexId};
 pub struct SplitOptions {
     /// Largest slope of the length of boundary edges; more than [`SLOPE_MAX`] is taken for that.
     pub growth: f64,
+    /// Parts follow this spacing where it is the smaller one; `None`: no such bound.
+    pub spacing: Option<f64>,
     /// More new points than this are an error.
     pub points_max: usize,
     /// New coordinates are multiples of this power of two; `None`: any float.
@@ -132,7 +134,8 @@ impl<'a> Splitter<'a> {
             }
             let left = (self.options.points_max - self.count) as f64;
             let [a, b] = self.ends(line);
-            let spacing = |at| field.at(between(a, b, at)).max(self.length_min);
+            let bound = self.options.spacing.unwrap_or(f64::INFINITY);
+            let spacing = |at| field.at(between(a, b, at)).min(bound).max(self.length_min);
             let table = integral(line.length, spacing, left)
                 .ok_or(TooManyPoints(self.options.points_max))?;
             let places = spread(&table);

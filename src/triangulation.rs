@@ -159,6 +159,18 @@ impl Triangulation {
         Self { slots: Vec::with_capacity(triangles), free: Vec::new() }
     }
 
+    /// Becomes a copy of another triangulation, reusing memory.
+    pub(crate) fn assign(&mut self, other: &Self) {
+        self.slots.clone_from(&other.slots);
+        self.free.clone_from(&other.free);
+    }
+
+    /// Removes everything but the memory.
+    pub(crate) fn clear(&mut self) {
+        self.slots.clear();
+        self.free.clear();
+    }
+
     /// Number of slots, live or free: every triangle's index is below it.
     #[must_use]
     pub fn slot_count(&self) -> usize {

@@ -438,3 +438,62 @@ fn default_quality_on_regular_domains() {
     // The mean ratio is worse than 0.6 only where R/(2r) is above 1.8.
     assert!(2.0 * 3_f64.sqrt() * worst_shape(&mesh) > 0.6, "worst {}", worst_shape(&mesh));
 }
+
+/// The mesh that a pool of so many threads makes.
+fn with_threads(count: usize, sketch: &Sketch, options: &Options) -> Mesh {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("a pool");
+    pool.install(|| sketch.mesh(options).mesh)
+}
+
+// spec: I20
+#[test]
+fn searches_on_several_threads_give_the_same_bytes() {
+    for (domain, sketch) in sketches() {
+        for level in [1, 2] {
+            let options = Options { improve: ImproveOptions::level(level), ..Options::default() };
+            let one = with_threads(1, &sketch, &options);
+            for count in [2, 5] {
+                let more = with_threads(count, &sketch, &options);
+                assert_eq!(one.points, more.points, "{domain}, level {level}, {count} threads");
+                assert_eq!(one.triangles, more.triangles, "{domain}, level {level}");
+            }
+        }
+    }
+}
+
+/// Mean of R/(2r).
+fn mean_aspect(mesh: &Mesh) -> f64 {
+    let aspect = |&t: &[u32; 3]| {
+        let [a, b, c] = corners(mesh, t);
+        let (x, y, z) = (b.distance(c), c.distance(a), a.distance(b));
+        x * y * z / ((y + z - x) * (z + x - y) * (x + y - z))
+    };
+    mesh.triangles.iter().map(aspect).sum::<f64>() / mesh.triangles.len() as f64
+}
+
+// spec: I21
+#[test]
+fn chains_of_changes_find_what_single_ones_do_not() {
+    let airfoil = Sketch::default()
+        .add_loop(circle(60, 0.0, 0.0, 15.0), 1)
+        .add_loop(circle(120, 0.0, 0.0, 0.5), 2);
+    let run = |depth| {
+        let improve = ImproveOptions { depth, ..ImproveOptions::level(1) };
+        airfoil.mesh(&Options { improve, ..Options::default() })
+    };
+    let (single, chains) = (run(1), run(3));
+    assert!(chains.improve.changes > single.improve.changes);
+    let [before, after] = [&single, &chains].map(|run| mean_aspect(&run.mesh) - 1.0);
+    assert!(after < 0.95 * before, "mean - 1 is {before} and {after}");
+    assert!(is_conforming(&chains.mesh));
+}
+
+// spec: I21
+#[test]
+fn no_chain_is_tried_where_none_is_allowed() {
+    for (domain, sketch) in sketches() {
+        let improve = ImproveOptions { depth: 0, ..ImproveOptions::level(2) };
+        let run = sketch.mesh(&Options { improve, ..Options::default() });
+        assert_eq!((run.improve.tried, run.improve.changes), (0, 0), "{domain}");
+    }
+}

@@ -1,32 +1,36 @@
 //! A patch: the triangles around a vertex, cut out into a small mesh of their own, where a change of
 //! topology can be tried, relaxed and judged, and thrown away when it was no good.
 
-use super::smooth::{Smoother, inverse_mean_ratio};
+use super::degree::Degrees;
+use super::energy::inverse_mean_ratio;
+use super::places::Places;
+use super::smooth::{NOWHERE, Sheet, Smoother};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// A small mesh; its vertices are the outline's first, then those inside that may not move, then
-/// the movable ones.
-#[derive(Clone, Default)]
+/// the movable ones. What memory it has is reused from one patch to the next.
+#[derive(Default)]
 pub(super) struct Patch {
     pub(super) mesh: Triangulation,
     pub(super) points: Vec<Point2>,
     /// Vertices below this index do not move.
     pub(super) fixed: usize,
+    smoother: Smoother,
+    /// Vertices around the last change.
+    touched: Vec<VertexId>,
 }
 
 /// Where a patch came from.
 #[derive(Default)]
 pub(super) struct Origin {
     /// The triangles it was cut from, in the order they were found.
-    pub(super) triangles: Vec<TriangleId>,
+    triangles: Vec<TriangleId>,
     /// For each vertex of the patch that of the mesh.
     pub(super) vertices: Vec<VertexId>,
     /// For each border of the patch what lies across it in the mesh.
-    pub(super) outside: Vec<Across>,
-    /// For each triangle of the mesh its place in the patch, valid for those in it.
-    places: Vec<u32>,
+    outside: Vec<Across>,
     tag: u32,
 }
 
@@ -47,8 +51,6 @@ pub(super) struct Cut {
     pub(super) rings: u32,
     /// Vertices of the mesh below this index do not move.
     pub(super) fixed: usize,
-    /// Marks the triangles of this patch.
-    pub(super) epoch: u32,
 }
 
 /// A change of topology in a patch.
@@ -72,96 +74,58 @@ const TRIANGLES_MAX: usize = 200;
 const SWEEPS: usize = 4;
 
 impl Patch {
-    /// Cuts the rings of triangles around the origin of `start` out of `mesh`. `None` where they are
-    /// too many, in several regions, or pinch the outline.
-    pub(super) fn cut(
-        mesh: &mut Triangulation,
-        points: &[Point2],
-        start: HalfEdgeId,
-        cut: Cut,
-        origin: &mut Origin,
-    ) -> Option<Self> {
-        let Cut { fixed, epoch, .. } = cut;
-        collect_rings(mesh, start, cut, &mut origin.triangles)?;
-        origin.tag = mesh.tag(start.triangle());
-        let mut outline = Vec::new();
-        let mut inside = Vec::new();
-        for &t in &origin.triangles {
-            if mesh.tag(t) != origin.tag {
-                return None;
-            }
-            for e in t.half_edges() {
-                let is_outline = match mesh.across(e) {
-                    Across::Border(_) => true,
-                    Across::Twin(twin) => mesh.mark(twin.triangle()) != epoch,
-                };
-                if is_outline {
-                    outline.push(mesh.origin(e));
-                }
-                inside.push(mesh.origin(e));
-            }
-        }
-        let edges = outline.len();
-        outline.sort_unstable();
-        outline.dedup();
-        if outline.len() != edges {
-            return None;
-        }
-        inside.sort_unstable();
-        inside.dedup();
-        inside.retain(|v| outline.binary_search(v).is_err());
-        let held = inside.partition_point(|v| v.index() < fixed);
-        origin.vertices.clear();
-        origin.vertices.extend(outline.iter().chain(&inside));
-        let count = outline.len();
-        let local = |v: VertexId| {
-            let place = outline.binary_search(&v).unwrap_or_else(|_| {
-                count + inside.binary_search(&v).expect("a vertex of the patch")
-            });
-            VertexId(place as u32)
-        };
-        let mut patch = Self {
-            mesh: Triangulation::with_capacity(origin.triangles.len() + 4),
-            points: origin.vertices.iter().map(|v| points[v.index()]).collect(),
-            fixed: count + held,
-        };
-        let all = std::mem::take(&mut origin.triangles);
-        for &t in &all {
-            let new = patch.mesh.add(mesh.corners(t).map(local));
-            patch.mesh.set_tag(new, 0);
-        }
-        patch.link_up(mesh, &all, epoch, origin);
-        origin.triangles = all;
-        Some(patch)
+    /// Takes over another patch, reusing memory.
+    pub(super) fn assign(&mut self, other: &Self) {
+        self.mesh.assign(&other.mesh);
+        self.points.clone_from(&other.points);
+        self.fixed = other.fixed;
+        self.smoother.assign(&other.smoother);
+        self.touched.clone_from(&other.touched);
     }
 
-    fn link_up(
+    /// Becomes the rings of triangles around a vertex of a mesh, and returns what the vertex is in
+    /// the patch; `None` where they are too many, in several regions, or pinch the outline.
+    pub(super) fn cut(
         &mut self,
-        mesh: &Triangulation,
-        all: &[TriangleId],
-        epoch: u32,
+        Degrees { mesh, points, outgoing }: Degrees<'_>,
+        v: VertexId,
+        cut: Cut,
         origin: &mut Origin,
-    ) {
-        origin.outside.clear();
-        origin.places.resize(mesh.slot_count().max(origin.places.len()), 0);
-        for (i, &t) in (0..).zip(all) {
-            origin.places[t.index()] = i;
+    ) -> Option<VertexId> {
+        let mut found = Found::around(mesh, outgoing[v.index()], cut.rings)?;
+        let outline = found.sort_vertices(mesh)?;
+        origin.tag = mesh.tag(found.triangles[0]);
+        let held = found.vertices[outline..].partition_point(|v| v.index() < cut.fixed);
+        self.fixed = outline + held;
+        self.points.clear();
+        self.points.extend(found.vertices.iter().map(|v| points[v.index()]));
+        self.mesh.clear();
+        for &t in &found.triangles {
+            let place = |v: VertexId| found.vertex_places.get(v.0).expect("a vertex of the patch");
+            self.mesh.add(mesh.corners(t).map(|v| VertexId(place(v))));
         }
-        let places = &origin.places;
-        let place = |t: TriangleId| TriangleId(places[t.index()]);
-        let outside = &mut origin.outside;
-        for (i, &t) in (0..).zip(all) {
+        self.link_up(mesh, &found, &mut origin.outside);
+        self.smoother.at_rest(&self.mesh, self.points.len());
+        self.touched.clear();
+        let here = found.vertex_places.get(v.0).map(VertexId);
+        (origin.triangles, origin.vertices) = (found.triangles, found.vertices);
+        here
+    }
+
+    fn link_up(&mut self, mesh: &Triangulation, found: &Found, outside: &mut Vec<Across>) {
+        for (i, &t) in (0..).zip(&found.triangles) {
             for (corner, e) in (0..).zip(t.half_edges()) {
                 let here = TriangleId(i).half_edge(corner);
-                match mesh.across(e) {
-                    Across::Twin(twin) if mesh.mark(twin.triangle()) == epoch => {
+                let across = mesh.across(e);
+                match (across, found.inside(across)) {
+                    (Across::Twin(twin), Some(place)) => {
                         if e < twin {
-                            let there = place(twin.triangle()).half_edge(twin.corner() as u32);
+                            let there = TriangleId(place).half_edge(twin.corner() as u32);
                             self.mesh.link(here, there);
                             self.mesh.set_constrained(here, mesh.is_constrained(e));
                         }
                     }
-                    across => {
+                    _ => {
                         self.mesh.set_border(here, outside.len() as u32);
                         // A constraint on the outline stays one: remembered with what lies across.
                         outside.push(across);
@@ -173,6 +137,7 @@ impl Patch {
 
     /// Makes a change; `false` when it cannot be made.
     pub(super) fn make(&mut self, change: Change) -> bool {
+        self.touched.clear();
         match change {
             Change::Flip(a, b) => self.edge(a, b).is_some_and(|e| self.flip(e)),
             Change::Remove(v) => self.remove(v),
@@ -180,38 +145,56 @@ impl Patch {
         }
     }
 
-    /// Smooths and flips to Delaunay; gives up after the first sweep when it is `hopeless`.
+    /// Smooths and flips to Delaunay from where a change was made; gives up after the first sweep
+    /// when it is `hopeless`.
     pub(super) fn relax(&mut self, quantum: Option<f64>, hopeless: f64) {
-        let mut smoother = Smoother::new(&mut self.mesh, &mut self.points, self.fixed, quantum);
-        smoother.sweep();
-        smoother.flip_all();
-        if smoother.excess() > hopeless {
+        let Self { mesh, points, fixed, smoother, .. } = self;
+        let mut sheet = Sheet { mesh, points, fixed: *fixed, quantum };
+        smoother.sweep(&mut sheet);
+        smoother.flip(&mut sheet);
+        if excess(sheet.mesh, sheet.points) > hopeless {
             return;
         }
         for _ in 1..SWEEPS {
-            if smoother.sweep() == 0 {
+            if smoother.sweep(&mut sheet) == 0 {
                 break;
             }
-            smoother.flip();
         }
+        smoother.flip(&mut sheet);
+    }
+
+    /// Vertices around the last change, some of them more than once.
+    pub(super) fn touched(&self) -> &[VertexId] {
+        &self.touched
     }
 
     pub(super) fn worth(&self) -> Worth {
         let mut worth = Worth { excess: 0.0, worst: 0.0 };
-        for t in self.mesh.triangles() {
-            let [a, b, c] = self.mesh.corners(t).map(|v| self.points[v.index()]);
-            let f = inverse_mean_ratio(a, b, c);
+        for f in ratios(&self.mesh, &self.points) {
             worth.excess += f * f - 1.0 + BAD_WEIGHT * (f - BAD).max(0.0);
             worth.worst = worth.worst.max(f);
         }
         worth
     }
 
+    /// Adds the changes worth trying around a vertex.
+    pub(super) fn changes(&self, v: VertexId, list: &mut Vec<Change>) {
+        let outgoing = &self.smoother.outgoing;
+        Degrees { mesh: &self.mesh, points: &self.points, outgoing }.changes(v, list);
+    }
+
+    fn touch(&mut self, t: TriangleId) {
+        self.touched.extend(self.mesh.corners(t));
+        self.smoother.touch(&self.mesh, t);
+    }
+
     fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdgeId> {
-        let mut edges = self.mesh.triangles().flat_map(TriangleId::half_edges);
-        edges.find(|&e| {
-            self.mesh.origin(e) == a && self.mesh.dest(e) == b && !self.mesh.is_constrained(e)
-        })
+        let e = self.mesh.half_edge_to(self.out_of(a)?, b)?;
+        (!self.mesh.is_constrained(e)).then_some(e)
+    }
+
+    fn out_of(&self, v: VertexId) -> Option<HalfEdgeId> {
+        Some(self.smoother.outgoing[v.index()]).filter(|&e| e != NOWHERE)
     }
 
     fn is_ccw(&self, corners: [VertexId; 3]) -> bool {
@@ -226,6 +209,8 @@ impl Patch {
         let convex = self.is_ccw([d, c, a]) && self.is_ccw([c, d, b]);
         if convex {
             self.mesh.flip(e);
+            self.touch(e.triangle());
+            self.touch(f.triangle());
         }
         convex
     }
@@ -243,7 +228,10 @@ impl Patch {
             self.points.pop();
             return false;
         }
-        self.mesh.split_edge(e, m);
+        self.smoother.push();
+        for outer in self.mesh.split_edge(e, m) {
+            self.touch(outer.triangle());
+        }
         true
     }
 
@@ -253,14 +241,7 @@ impl Patch {
         if v.index() < self.fixed {
             return false;
         }
-        let Some(start) = self
-            .mesh
-            .triangles()
-            .flat_map(TriangleId::half_edges)
-            .find(|&e| self.mesh.origin(e) == v)
-        else {
-            return false;
-        };
+        let Some(start) = self.out_of(v) else { return false };
         let star: Vec<HalfEdgeId> = self.mesh.star(start).collect();
         let n = star.len();
         if star.iter().any(|&e| self.mesh.is_constrained(e)) || n < 4 {
@@ -278,6 +259,7 @@ impl Patch {
         for e in &star {
             self.mesh.remove(e.triangle());
         }
+        self.smoother.outgoing[v.index()] = NOWHERE;
         let attach = |mesh: &mut Triangulation, side: HalfEdgeId, i: usize| {
             let (across, constrained) = outer[i % n];
             mesh.relink(side, across);
@@ -294,38 +276,120 @@ impl Patch {
             }
             attach(&mut self.mesh, t.half_edge(1), w + i);
             before = Some(t.half_edge(2));
+            self.touch(t);
         }
         attach(&mut self.mesh, before.expect("a polygon of four"), w + n - 1);
         true
     }
 }
 
-/// Triangles within so many rings of a vertex, marked with the epoch; `None` where they are too many.
-fn collect_rings(
-    mesh: &mut Triangulation,
-    start: HalfEdgeId,
-    Cut { rings, epoch, .. }: Cut,
-    triangles: &mut Vec<TriangleId>,
-) -> Option<()> {
-    triangles.clear();
-    let mut ring = vec![start];
-    for _ in 0..rings {
-        let first = triangles.len();
-        for &e in &ring {
-            let star: Vec<TriangleId> = mesh.star(e).map(HalfEdgeId::triangle).collect();
-            for t in star {
-                if mesh.mark(t) != epoch {
-                    mesh.set_mark(t, epoch);
-                    triangles.push(t);
+fn ratios(mesh: &Triangulation, points: &[Point2]) -> impl Iterator<Item = f64> {
+    mesh.triangles().map(|t| {
+        let [a, b, c] = mesh.corners(t).map(|v| points[v.index()]);
+        inverse_mean_ratio(a, b, c)
+    })
+}
+
+/// Sum of squared inverse mean ratios above 1.
+fn excess(mesh: &Triangulation, points: &[Point2]) -> f64 {
+    ratios(mesh, points).map(|f| f * f - 1.0).sum()
+}
+
+/// The triangles and vertices of a patch in the mesh.
+struct Found {
+    triangles: Vec<TriangleId>,
+    vertices: Vec<VertexId>,
+    triangle_places: Places,
+    vertex_places: Places,
+}
+
+impl Found {
+    /// The triangles within so many rings of the origin of `start`; `None` where they are too many or
+    /// in several regions.
+    fn around(mesh: &Triangulation, start: HalfEdgeId, rings: u32) -> Option<Self> {
+        if start == NOWHERE {
+            return None;
+        }
+        let mut found = Self {
+            triangles: Vec::with_capacity(96),
+            vertices: Vec::with_capacity(64),
+            triangle_places: Places::default(),
+            vertex_places: Places::default(),
+        };
+        found.find(mesh.origin(start));
+        // Vertices whose stars are still to be taken, by a half-edge out of them.
+        let mut ring = vec![start];
+        let mut next = Vec::new();
+        for _ in 0..rings {
+            for &e in &ring {
+                for spoke in mesh.star(e) {
+                    found.take(mesh, spoke, &mut next)?;
                 }
             }
-            if triangles.len() > TRIANGLES_MAX {
+            ring.clear();
+            std::mem::swap(&mut ring, &mut next);
+        }
+        Some(found)
+    }
+
+    /// Takes the triangle of a half-edge, and lists a half-edge out of each vertex that is new.
+    fn take(
+        &mut self,
+        mesh: &Triangulation,
+        e: HalfEdgeId,
+        next: &mut Vec<HalfEdgeId>,
+    ) -> Option<()> {
+        let t = e.triangle();
+        if self.triangle_places.insert(t.0, self.triangles.len() as u32) {
+            self.triangles.push(t);
+            if self.triangles.len() > TRIANGLES_MAX || mesh.tag(t) != mesh.tag(self.triangles[0]) {
                 return None;
             }
+            for side in [e.next(), e.prev()] {
+                if self.find(mesh.origin(side)) {
+                    next.push(side);
+                }
+            }
         }
-        ring = triangles[first..].iter().flat_map(|t| t.half_edges()).collect();
+        Some(())
     }
-    Some(())
+
+    /// Whether a vertex has not been found before.
+    fn find(&mut self, v: VertexId) -> bool {
+        let is_new = self.vertex_places.insert(v.0, 0);
+        if is_new {
+            self.vertices.push(v);
+        }
+        is_new
+    }
+
+    /// The place of the triangle across an edge, if that is in the patch.
+    fn inside(&self, across: Across) -> Option<u32> {
+        match across {
+            Across::Twin(twin) => self.triangle_places.get(twin.triangle().0),
+            Across::Border(_) => None,
+        }
+    }
+
+    /// Orders the vertices, the outline's first, each kind as in the mesh, and gives them their
+    /// places; returns the number on the outline, `None` where that is pinched.
+    fn sort_vertices(&mut self, mesh: &Triangulation) -> Option<usize> {
+        let mut outline: Vec<VertexId> = Vec::with_capacity(32);
+        for e in self.triangles.iter().flat_map(|t| t.half_edges()) {
+            if self.inside(mesh.across(e)).is_none() {
+                outline.push(mesh.origin(e));
+            }
+        }
+        outline.sort_unstable();
+        if outline.windows(2).any(|pair| pair[0] == pair[1]) {
+            return None;
+        }
+        self.vertices.sort_unstable_by_key(|v| (outline.binary_search(v).is_err(), *v));
+        for (place, v) in (0..).zip(&self.vertices) {
+            self.vertex_places.set(v.0, place);
+        }
+        Some(outline.len())
+    }
 }
 
 impl Origin {

@@ -134,7 +134,7 @@ impl Fields {
     }
 
     fn growth_field(&self, options: &Options, tuning: Tuning) -> GrowthField {
-        GrowthField::new(&self.sources(&self.node_spacing(options.density)), tuning.growth)
+        GrowthField::along(&self.sources(&self.node_spacing(options.density)), tuning.growth)
     }
 
     /// The base with what keeps it down: nothing in the ordinary case.

@@ -10,6 +10,10 @@
 //! about two spacings wide then keeps the sources that are smallest at sixteen sample points.
 //! Dropping the others raises the value by at most twice `g` times the distance to the next
 //! sample, and on the measured domains by less than 3 % (SPEC 6).
+//!
+//! Where the boundary's own spacing grows faster than `g`, the field would be finer beside it than
+//! the boundary is, and triangles there would have a boundary edge too long for their other sides.
+//! [`GrowthField::along`] lifts the field to what the boundary has, from which it sinks again.
 
 use crate::point::Point2;
 
@@ -30,13 +34,25 @@ pub struct GrowthField {
     size: f64,
     nodes: Vec<Node>,
     sources: Vec<Source>,
+    /// Nodes of the boundary from which the field sinks.
+    floors: Vec<Source>,
 }
 
-/// A cell: four children at `first ..`, or a leaf with sources `first .. first + count`.
-#[derive(Clone, Copy, Debug)]
+/// A cell: four children at `first ..`, or a leaf with sources `first .. first + count` and floors
+/// `floor .. floor + floors`.
+#[derive(Clone, Copy, Debug, Default)]
 struct Node {
     first: u32,
     count: u32,
+    floor: u32,
+    floors: u32,
+}
+
+/// Sources and floors that matter in a cell.
+#[derive(Clone, Default)]
+struct Lists {
+    sources: Vec<Source>,
+    floors: Vec<Source>,
 }
 
 const INNER: u32 = u32::MAX;
@@ -46,6 +62,13 @@ const DEPTH_MAX: u32 = 40;
 const LEAF_WIDTH: f64 = 2.0;
 /// Lists up to this length are kept whole.
 const LIST_MAX: usize = 4;
+/// Growth between boundary nodes that the field follows even where its own is less.
+const FOLLOWED: f64 = 0.5;
+/// Slope with which it sinks from a boundary node to what its own growth allows. At least
+/// `FOLLOWED`: so no node lifts the field above what another one allows with that.
+const SINKING: f64 = 0.5;
+/// A node this much coarser than the field lifts it.
+const COARSER: f64 = 1.02;
 
 #[derive(Clone, Copy)]
 struct Cell {
@@ -93,11 +116,37 @@ impl GrowthField {
     /// When there is no source.
     #[must_use]
     pub fn new(sources: &[Source], growth: f64) -> Self {
+        Self::with_floors(sources, growth, Vec::new())
+    }
+
+    /// The field beside a boundary whose nodes are the sources: max(h(x), k_i - 0.5 |x - x_i|),
+    /// where k_i is the spacing at node i, or what growth 0.5 from the other nodes allows there.
+    ///
+    /// # Panics
+    /// When there is no source.
+    #[must_use]
+    pub fn along(sources: &[Source], growth: f64) -> Self {
+        let field = Self::new(sources, growth);
+        if growth >= FOLLOWED {
+            return field;
+        }
+        let is_coarse = |s: &&Source| s.spacing > COARSER * field.at(s.at);
+        if !sources.iter().any(|s| is_coarse(&s)) {
+            return field;
+        }
+        let followed = Self::new(sources, FOLLOWED);
+        let floor = |s: &Source| Source { spacing: s.spacing.min(followed.at(s.at)), ..*s };
+        let floors = sources.iter().filter(is_coarse).map(floor).collect();
+        Self::with_floors(sources, growth, floors)
+    }
+
+    fn with_floors(sources: &[Source], growth: f64, floors: Vec<Source>) -> Self {
         assert!(!sources.is_empty(), "a growth field needs a source");
         let (origin, size) = bounding_square(sources);
-        let mut field = Self { growth, origin, size, nodes: Vec::new(), sources: Vec::new() };
-        field.nodes.push(Node { first: 0, count: 0 });
-        field.build(0, Cell { origin, size, depth: 0 }, sources.to_vec());
+        let (nodes, kept) = (vec![Node::default()], Vec::new());
+        let mut field = Self { growth, origin, size, nodes, sources: kept, floors: Vec::new() };
+        let lists = Lists { sources: sources.to_vec(), floors };
+        field.build(0, Cell { origin, size, depth: 0 }, lists);
         field
     }
 
@@ -121,7 +170,9 @@ impl GrowthField {
             node = self.nodes[node.first as usize + usize::from(right) + 2 * usize::from(upper)];
         }
         let list = &self.sources[node.first as usize..(node.first + node.count) as usize];
-        self.minimum(list, p).1
+        let floors = &self.floors[node.floor as usize..(node.floor + node.floors) as usize];
+        let floor = |s: &Source| s.spacing - SINKING * s.at.distance(p);
+        floors.iter().map(floor).fold(self.minimum(list, p).1, f64::max)
     }
 
     /// Index and value of the smallest source at `p`.
@@ -136,23 +187,33 @@ impl GrowthField {
         best
     }
 
-    fn build(&mut self, index: usize, cell: Cell, mut list: Vec<Source>) {
-        let smallest = self.prune(cell, &mut list);
+    fn build(&mut self, index: usize, cell: Cell, mut lists: Lists) {
+        let smallest = self.prune(cell, &mut lists.sources);
+        lists.floors.retain(|s| s.spacing - SINKING * cell.distances(s.at).0 > smallest);
         let narrow = cell.size <= LEAF_WIDTH * smallest;
-        if narrow || list.len() <= LIST_MAX || cell.depth >= DEPTH_MAX {
-            let list = if list.len() > LIST_MAX { self.sampled(cell, &list) } else { list };
-            let (first, count) = (self.sources.len() as u32, list.len() as u32);
-            self.nodes[index] = Node { first, count };
-            self.sources.extend(list);
+        let is_short = lists.sources.len() <= LIST_MAX && lists.floors.len() <= LIST_MAX;
+        if narrow || is_short || cell.depth >= DEPTH_MAX {
+            self.nodes[index] = self.leaf(cell, lists);
             return;
         }
         let first = self.nodes.len();
-        self.nodes[index] = Node { first: first as u32, count: INNER };
-        self.nodes.extend([Node { first: 0, count: 0 }; 4]);
+        self.nodes[index] = Node { first: first as u32, count: INNER, ..Node::default() };
+        self.nodes.extend([Node::default(); 4]);
         for quadrant in 0..3 {
-            self.build(first + quadrant, cell.child(quadrant), list.clone());
+            self.build(first + quadrant, cell.child(quadrant), lists.clone());
         }
-        self.build(first + 3, cell.child(3), list);
+        self.build(first + 3, cell.child(3), lists);
+    }
+
+    fn leaf(&mut self, cell: Cell, Lists { mut sources, floors }: Lists) -> Node {
+        if sources.len() > LIST_MAX {
+            sources = self.sampled(cell, &sources);
+        }
+        let (first, floor) = (self.sources.len() as u32, self.floors.len() as u32);
+        let node = Node { first, count: sources.len() as u32, floor, floors: floors.len() as u32 };
+        self.sources.extend(sources);
+        self.floors.extend(floors);
+        node
     }
 
     /// Drops the sources that are nowhere in the cell the smallest; returns a lower bound of the
@@ -244,5 +305,64 @@ mod tests {
             (0..10_000).map(|i| Source { at: Point2::new(0.5, 0.5), spacing: 1.0 + f64::from(i) });
         let field = GrowthField::new(&heap.collect::<Vec<_>>(), 0.25);
         assert_eq!(field.at(Point2::new(0.5, 0.5)), 1.0);
+    }
+
+    /// Nodes along a line whose spacing grows by `slope` from 0.01 at the origin.
+    fn graded_line(slope: f64, y: f64) -> Vec<Source> {
+        let mut x = 0.0;
+        let mut nodes = Vec::new();
+        while x < 1.0 {
+            let spacing = 0.01 + slope * x;
+            nodes.push(Source { at: Point2::new(x, y), spacing });
+            x += spacing;
+        }
+        nodes
+    }
+
+    // spec: H20
+    #[test]
+    fn the_field_follows_a_boundary_that_grows_faster_than_it() {
+        let nodes = graded_line(0.4, 0.0);
+        let (plain, along) = (GrowthField::new(&nodes, 0.12), GrowthField::along(&nodes, 0.12));
+        let last = nodes[nodes.len() - 1];
+        assert!(plain.at(last.at) < 0.5 * last.spacing, "the boundary is no test");
+        for node in &nodes {
+            let h = along.at(node.at);
+            assert!((h - node.spacing).abs() <= 0.05 * node.spacing, "{h} at {}", node.at);
+        }
+        for p in grid(1.0) {
+            let floor = |s: &Source| s.spacing - SINKING * s.at.distance(p);
+            let floor = nodes.iter().map(floor).fold(0.0, f64::max);
+            let (low, high) = (exact(&nodes, 0.12, p), exact(&nodes, 0.5, p));
+            let h = along.at(p);
+            assert!(h >= low.max(0.98 * floor) && h <= 1.03 * low.max(floor), "{h} at {p}");
+            assert!(h <= 1.03 * high, "{h} at {p} where growth 0.5 allows {high}");
+        }
+    }
+
+    // spec: H20
+    #[test]
+    fn a_coarse_boundary_does_not_lift_the_field_at_a_fine_one_beside_it() {
+        let coarse = (0..5).map(|i| Source { at: Point2::new(f64::from(i), 0.1), spacing: 1.0 });
+        let fine =
+            (0..400).map(|i| Source { at: Point2::new(f64::from(i) / 100.0, 0.0), spacing: 0.01 });
+        let nodes: Vec<Source> = coarse.chain(fine.clone()).collect();
+        let field = GrowthField::along(&nodes, 0.2);
+        for node in fine {
+            assert!((field.at(node.at) - 0.01).abs() < 1e-12, "{}", field.at(node.at));
+        }
+        assert!(field.at(Point2::new(1.0, 0.1)) <= 0.0601);
+    }
+
+    // spec: H20
+    #[test]
+    fn where_no_node_is_coarse_nothing_is_lifted() {
+        let nodes = graded_line(0.2, 0.0);
+        let (plain, along) = (GrowthField::new(&nodes, 0.25), GrowthField::along(&nodes, 0.25));
+        let steep = GrowthField::along(&graded_line(0.9, 0.0), 0.5);
+        assert!(along.floors.is_empty() && steep.floors.is_empty());
+        for p in grid(1.0) {
+            assert_eq!(plain.at(p), along.at(p));
+        }
     }
 }

@@ -46,21 +46,21 @@ pub struct Golden {
 
 /// All of them.
 pub const GOLDENS: [Golden; 14] = [
-    golden("airfoil", Form::Poly, &[], 1.5, airfoil),
-    golden("airfoil_section", Form::Dat, &["--farfield", "4,20"], 1.5, section),
-    golden("three_element", Form::Poly, &[], 1.6, three_element),
-    golden("plate_with_holes", Form::Json, &[], 1.8, plate_with_holes),
-    golden("gear", Form::Json, &[], 1.5, gear),
-    golden("l_shape", Form::Poly, &["--gradation", "uniform"], 1.3, l_shape),
-    golden("narrow_channel", Form::Poly, &[], 1.6, narrow_channel),
-    golden("spiral", Form::Poly, &[], 2.5, spiral),
-    golden("comb", Form::Poly, &["--method", "afm"], 1.5, comb),
-    golden("star", Form::Json, &[], 2.2, star),
-    golden("nested_islands", Form::Json, &["--method", "direct"], 1.5, nested_islands),
+    golden("airfoil", Form::Poly, &[], 1.15, airfoil),
+    golden("airfoil_section", Form::Dat, &["--farfield", "4,20"], 1.15, section),
+    golden("three_element", Form::Poly, &[], 1.2, three_element),
+    golden("plate_with_holes", Form::Json, &[], 1.2, plate_with_holes),
+    golden("gear", Form::Json, &[], 1.25, gear),
+    golden("l_shape", Form::Poly, &["--gradation", "uniform"], 1.07, l_shape),
+    golden("narrow_channel", Form::Poly, &[], 1.45, narrow_channel),
+    golden("spiral", Form::Poly, &[], 2.2, spiral),
+    golden("comb", Form::Poly, &["--method", "afm"], 1.25, comb),
+    golden("star", Form::Json, &[], 2.05, star),
+    golden("nested_islands", Form::Json, &["--method", "direct"], 1.2, nested_islands),
     // The boundary is not split: fans at the corners of its long edges are the best there is.
-    golden("jump", Form::Poly, &[], 8.0, jump),
-    golden("constrained", Form::Poly, &["--gradation", "mean", "--clamp", "1.5"], 4.0, constrained),
-    golden("background", Form::Poly, &["--method", "delaunay-initial"], 20.0, plate_with_holes),
+    golden("jump", Form::Poly, &[], 5.8, jump),
+    golden("constrained", Form::Poly, &["--gradation", "mean", "--clamp", "1.5"], 2.5, constrained),
+    golden("background", Form::Poly, &["--method", "delaunay-initial"], 18.0, plate_with_holes),
 ];
 
 const fn golden(

@@ -1,0 +1,129 @@
+//! A search for a better topology around one vertex: it looks at the mesh and leaves it alone, so
+//! that several can be made at once.
+//!
+//! Most single changes make things worse before another one makes them better: a dislocation of the
+//! lattice has to glide over a barrier. So the search goes on from the least bad change to what that
+//! suggests, some steps deep (the chains of Lin and Kernighan, 1973), and is a success when the end
+//! of a chain is better than its beginning.
+
+use super::degree::Degrees;
+use super::patch::{Change, Cut, Origin, Patch, Worth};
+use crate::triangulation::VertexId;
+
+/// A success must lower the excess of its patch by this much, or it is not worth its disturbance.
+const GAIN_MIN: f64 = 2e-3;
+/// A change that is so much worse than the best so far after one sweep is given up.
+const HOPELESS: f64 = 1.1;
+/// Two patches of the same origin whose excesses differ by less than this are the same again.
+const SAME: f64 = 5e-3;
+
+/// How much is tried around a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Effort {
+    /// Rings of triangles in a patch.
+    pub(super) rings: u32,
+    /// Length of a chain of changes.
+    pub(super) depth: u32,
+}
+
+/// What came of a search.
+#[derive(Default)]
+pub(super) struct Attempt {
+    /// Changes tried.
+    pub(super) tried: u64,
+    /// Where the patch came from.
+    pub(super) origin: Origin,
+    /// What is to take its place, if the search was a success.
+    pub(super) better: Option<Patch>,
+}
+
+/// The mesh as it is looked at.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) degrees: Degrees<'a>,
+    /// Vertices below this index do not move.
+    pub(super) fixed: usize,
+    pub(super) quantum: Option<f64>,
+    pub(super) effort: Effort,
+}
+
+/// Memory for searches, reused from one to the next.
+#[derive(Default)]
+pub(super) struct Searcher {
+    base: Patch,
+    trial: Patch,
+    next: Patch,
+    best: Patch,
+    changes: Vec<Change>,
+    around: Vec<VertexId>,
+}
+
+/// How far a search has come.
+struct Goal {
+    worst: f64,
+    /// Less excess than this is a success, or a better one.
+    bound: f64,
+    found: bool,
+    tried: u64,
+}
+
+impl Searcher {
+    /// Searches around a vertex.
+    pub(super) fn search(&mut self, view: View<'_>, v: VertexId) -> Attempt {
+        let Effort { rings, depth } = view.effort;
+        let mut attempt = Attempt::default();
+        let cut = Cut { rings, fixed: view.fixed };
+        let Some(here) = self.base.cut(view.degrees, v, cut, &mut attempt.origin) else {
+            return attempt;
+        };
+        let now = self.base.worth();
+        let bound = now.excess - GAIN_MIN;
+        let mut goal = Goal { worst: now.worst, bound, found: false, tried: 0 };
+        let mut seen = vec![now.excess];
+        self.around.clear();
+        self.around.push(here);
+        for _ in 0..depth {
+            let least = self.try_all(view.quantum, &mut goal, &seen);
+            if goal.found || least == f64::INFINITY {
+                break;
+            }
+            seen.push(least);
+            std::mem::swap(&mut self.base, &mut self.next);
+            self.around.clear();
+            self.around.extend(self.base.touched());
+            self.around.sort_unstable();
+            self.around.dedup();
+        }
+        attempt.tried = goal.tried;
+        attempt.better = goal.found.then(|| std::mem::take(&mut self.best));
+        attempt
+    }
+
+    /// Tries the changes around the vertices in question from the base on; returns the least excess
+    /// that is no success and has not been seen, whose patch is then the next.
+    fn try_all(&mut self, quantum: Option<f64>, goal: &mut Goal, seen: &[f64]) -> f64 {
+        self.changes.clear();
+        for &v in &self.around {
+            self.base.changes(v, &mut self.changes);
+        }
+        let mut least = f64::INFINITY;
+        for &change in &self.changes {
+            self.trial.assign(&self.base);
+            if !self.trial.make(change) {
+                continue;
+            }
+            goal.tried += 1;
+            self.trial.relax(quantum, HOPELESS * goal.bound);
+            let Worth { excess, worst } = self.trial.worth();
+            if excess < goal.bound && worst <= goal.worst {
+                goal.bound = excess;
+                goal.found = true;
+                std::mem::swap(&mut self.trial, &mut self.best);
+            } else if excess < least && seen.iter().all(|s| (s - excess).abs() > SAME) {
+                least = excess;
+                std::mem::swap(&mut self.trial, &mut self.next);
+            }
+        }
+        least
+    }
+}

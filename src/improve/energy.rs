@@ -1,0 +1,129 @@
+//! The energy of a vertex: how far the triangles around it are from equilateral, and the step that
+//! lowers it.
+//!
+//! The energy is the sum over the triangles of f^2, where f = (sum of squared sides) /
+//! (4 sqrt(3) area) is the inverse mean ratio (Knupp, "Algebraic mesh quality metrics", 2001): 1 for
+//! an equilateral triangle, infinite for a flat one, smooth between, and free of square roots. Near
+//! 1 it is R/(2r) up to a factor: R/(2r) - 1 = 9/8 (f - 1) to second order.
+
+use crate::point::Point2;
+use crate::predicates::{Sign, orient2d};
+
+const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
+
+/// The inverse mean ratio of a triangle, at least 1; infinite for one that is not counterclockwise.
+#[inline]
+pub(super) fn inverse_mean_ratio(a: Point2, b: Point2, c: Point2) -> f64 {
+    let double_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    let squares = a.distance_sq(b) + b.distance_sq(c) + c.distance_sq(a);
+    if double_area > 0.0 { squares / (TWO_SQRT_3 * double_area) } else { f64::INFINITY }
+}
+
+/// Energy, its gradient and Hessian, and the worst inverse mean ratio (unscaled) of a star.
+struct Energy {
+    value: f64,
+    worst: f64,
+    gradient: [f64; 2],
+    hessian: [f64; 3],
+}
+
+impl Energy {
+    fn of(v: Point2, link: &[Point2]) -> Self {
+        let mut sum = Self { value: 0.0, worst: 0.0, gradient: [0.0; 2], hessian: [0.0; 3] };
+        let mut w = link[link.len() - 1];
+        for &u in link {
+            sum.add(v, w, u);
+            w = u;
+        }
+        sum
+    }
+
+    /// Adds the triangle (v, u, w): f = q / a with q the squared sides and a twice the area.
+    #[inline]
+    fn add(&mut self, v: Point2, u: Point2, w: Point2) {
+        let (ux, uy, wx, wy) = (u.x - v.x, u.y - v.y, w.x - v.x, w.y - v.y);
+        let (ex, ey) = (wx - ux, wy - uy);
+        let q = ux * ux + uy * uy + wx * wx + wy * wy + ex * ex + ey * ey;
+        let a = ux * wy - uy * wx;
+        let per_a = 1.0 / a;
+        let f = q * per_a;
+        // d(2 area)/dv is the edge u -> w turned a quarter: (-ey, ex); dq/dv = -2 (u + w - 2 v).
+        let (ax, ay) = (-ey, ex);
+        let gx = (-2.0 * (ux + wx) - f * ax) * per_a;
+        let gy = (-2.0 * (uy + wy) - f * ay) * per_a;
+        let (hxx, hyy) = ((4.0 - 2.0 * gx * ax) * per_a, (4.0 - 2.0 * gy * ay) * per_a);
+        let hxy = -(gx * ay + gy * ax) * per_a;
+        self.value += f * f;
+        self.worst = if a > 0.0 { self.worst.max(f) } else { f64::INFINITY };
+        self.gradient[0] += f * gx;
+        self.gradient[1] += f * gy;
+        self.hessian[0] += gx * gx + f * hxx;
+        self.hessian[1] += gx * gy + f * hxy;
+        self.hessian[2] += gy * gy + f * hyy;
+    }
+
+    /// The Newton step, or `None` where the energy is not convex.
+    fn step(&self) -> Option<[f64; 2]> {
+        let [xx, xy, yy] = self.hessian;
+        let [gx, gy] = self.gradient;
+        let determinant = xx * yy - xy * xy;
+        (determinant > 0.0 && xx > 0.0)
+            .then(|| [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant])
+    }
+}
+
+/// Whether the star of `v` has less energy than `now` and no triangle worse than its worst.
+fn is_better(v: Point2, link: &[Point2], now: &Energy) -> bool {
+    let mut value = 0.0;
+    let mut worst = 0.0_f64;
+    let mut u = link[link.len() - 1];
+    for &w in link {
+        let (ux, uy, wx, wy) = (u.x - v.x, u.y - v.y, w.x - v.x, w.y - v.y);
+        let (ex, ey) = (wx - ux, wy - uy);
+        let q = ux * ux + uy * uy + wx * wx + wy * wy + ex * ex + ey * ey;
+        let a = ux * wy - uy * wx;
+        let f = q / a;
+        value += f * f;
+        worst = if a > 0.0 { worst.max(f) } else { f64::INFINITY };
+        u = w;
+    }
+    value < now.value && worst <= now.worst
+}
+
+/// Newton's step, then halves of it.
+const TRIES: u32 = 3;
+
+/// A place for the vertex `v` in its link that is better and valid, if a step finds one.
+pub(super) fn better_place(
+    v: Point2,
+    link: &[Point2],
+    quantum: Option<f64>,
+    step_min: f64,
+) -> Option<Point2> {
+    let now = Energy::of(v, link);
+    let [mut dx, mut dy] = now.step()?;
+    let least_sq = step_min * step_min * v.distance_sq(link[0]);
+    for _ in 0..TRIES {
+        if dx * dx + dy * dy < least_sq {
+            return None;
+        }
+        let place = Point2::new(v.x + dx, v.y + dy);
+        let place = quantum.map_or(place, |q| place.rounded_to(q));
+        if is_better(place, link, &now) && is_valid(place, link) {
+            return Some(place);
+        }
+        (dx, dy) = (0.5 * dx, 0.5 * dy);
+    }
+    None
+}
+
+/// Whether all triangles of the star are strictly counterclockwise, exactly.
+fn is_valid(v: Point2, link: &[Point2]) -> bool {
+    let mut u = link[link.len() - 1];
+    v.is_finite()
+        && link.iter().all(|&w| {
+            let is_left = orient2d(v, u, w) == Sign::Positive;
+            u = w;
+            is_left
+        })
+}
