@@ -5,8 +5,10 @@ use super::failure::{Diagnostic, EXIT_CANNOT_RUN, EXIT_FINDINGS, Failure};
 use super::forms::{OutputFile, OutputForm, is_read, mesh_to_read};
 use super::input::load;
 use super::output::Outputs;
+use super::size_layers::NodalSpacing;
+use crate::check::Metric;
 use crate::check::certificate::FileHash;
-use crate::draw::{self, DrawError, Highlight, Layer, Panel, View, Viewer};
+use crate::draw::{self, Background, DrawError, Highlight, Layer, Panel, View, Viewer};
 use crate::format::mesh_json;
 use crate::format::{
     At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
@@ -235,6 +237,12 @@ pub struct Drawing<'a> {
     pub width: f64,
     /// What it points at.
     pub highlights: Vec<Highlight>,
+    /// The metric that colours it; `None` leaves it without colours.
+    pub colour: Option<Metric>,
+    /// Further values of the triangles, for the viewer.
+    pub layers: Vec<Layer>,
+    /// The background mesh with its spacings, for the viewer.
+    pub background: Option<NodalSpacing>,
 }
 
 impl<'a> Drawing<'a> {
@@ -247,6 +255,9 @@ impl<'a> Drawing<'a> {
             view: None,
             width: draw::Options::default().width,
             highlights: Vec::new(),
+            colour: Some(Metric::RadiusRatio),
+            layers: Vec::new(),
+            background: None,
         }
     }
 
@@ -259,8 +270,17 @@ impl<'a> Drawing<'a> {
         self.view.is_none() && self.highlights.is_empty() && draw::is_in_space(self.mesh)
     }
 
-    fn panel<'b>(&'b self, layer: &'b Layer) -> Panel<'b> {
-        let mut panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
+    /// The values that colour it.
+    fn layer(&self) -> Option<Layer> {
+        match self.colour? {
+            // Signed areas play no part in it, so that broken meshes are drawn as usual.
+            Metric::RadiusRatio => Some(Layer::radius_ratio(self.mesh)),
+            other => Some(Layer::metric(self.mesh, other)),
+        }
+    }
+
+    fn panel<'b>(&'b self, layer: Option<&'b Layer>) -> Panel<'b> {
+        let mut panel = Panel { layer, ..Panel::new(self.mesh, self.title.clone()) };
         panel.highlights = &self.highlights;
         match self.view {
             Some(view) => panel.cropped(view),
@@ -268,7 +288,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// As SVG: coloured by R / 2r, or a surface in space shaded.
+    /// As SVG: coloured by a metric, or a surface in space shaded.
     ///
     /// # Errors
     /// A view or page that cannot be drawn.
@@ -276,8 +296,8 @@ impl<'a> Drawing<'a> {
         if self.is_in_space() {
             return Ok(draw::perspective(self.mesh, &self.title, &self.options())?.0);
         }
-        let layer = Layer::radius_ratio(self.mesh);
-        draw::svg(&[self.panel(&layer)], &self.options())
+        let layer = self.layer();
+        draw::svg(&[self.panel(layer.as_ref())], &self.options())
     }
 
     /// As PNG, likewise.
@@ -288,8 +308,8 @@ impl<'a> Drawing<'a> {
         if self.is_in_space() {
             return draw::perspective_png(self.mesh, &self.title, &self.options());
         }
-        let layer = Layer::radius_ratio(self.mesh);
-        draw::png(&[self.panel(&layer)], &self.options())
+        let layer = self.layer();
+        draw::png(&[self.panel(layer.as_ref())], &self.options())
     }
 
     /// As a viewer in one HTML file.
@@ -297,7 +317,13 @@ impl<'a> Drawing<'a> {
     /// # Errors
     /// None that a mesh alone can give.
     pub fn html(&self) -> Result<String, DrawError> {
-        let viewer = Viewer { highlights: &self.highlights, ..Viewer::new(&self.title, self.mesh) };
+        let background = self.background.as_ref();
+        let viewer = Viewer {
+            highlights: &self.highlights,
+            layers: &self.layers,
+            background: background.map(|b| Background { mesh: &b.mesh, spacing: &b.spacing }),
+            ..Viewer::new(&self.title, self.mesh)
+        };
         draw::html(&viewer)
     }
 }
