@@ -153,6 +153,12 @@ fn write_all(
         Some(_) => spacing_layers(&data, &meshed.spacing),
         None => Vec::new(),
     };
+    // Without a field the background is a mesh and no more.
+    let spacing = |nodal: NodalSpacing| match layers.is_empty() {
+        true => NodalSpacing { spacing: Vec::new(), ..nodal },
+        false => nodal,
+    };
+    let background = background.map(spacing);
     let drawing = Drawing { layers, background, ..Drawing::of(&data, "") };
     for (i, file) in files.iter().enumerate() {
         mesh_file::write(outputs, i, file, MeshView::from(&meshed.mesh), &drawing)?;

@@ -182,7 +182,7 @@ pub fn write(
                 .map_err(Refusal::from)
                 .and_then(|png| out.write_all(&png).map_err(Refusal::Disk)),
             (OutputForm::Html, _) => drawing
-                .html()
+                .html(&file_name(&file.path))
                 .map_err(Refusal::from)
                 .and_then(|html| out.write_all(html.as_bytes()).map_err(Refusal::Disk)),
         };
@@ -199,6 +199,11 @@ pub fn write(
         Some(message) => Err(Failure::cannot_run(Diagnostic::new(message).at(file.path.display()))),
         None => written,
     }
+}
+
+/// The last part of a path, for people.
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// Why a file was not written.
@@ -312,17 +317,18 @@ impl<'a> Drawing<'a> {
         draw::png(&[self.panel(layer.as_ref())], &self.options())
     }
 
-    /// As a viewer in one HTML file.
+    /// As a viewer in one HTML file, which is called `name` unless there is a title.
     ///
     /// # Errors
     /// None that a mesh alone can give.
-    pub fn html(&self) -> Result<String, DrawError> {
+    pub fn html(&self, name: &str) -> Result<String, DrawError> {
+        let title = if self.title.is_empty() { name } else { &self.title };
         let background = self.background.as_ref();
         let viewer = Viewer {
             highlights: &self.highlights,
             layers: &self.layers,
             background: background.map(|b| Background { mesh: &b.mesh, spacing: &b.spacing }),
-            ..Viewer::new(&self.title, self.mesh)
+            ..Viewer::new(title, self.mesh)
         };
         draw::html(&viewer)
     }
