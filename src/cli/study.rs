@@ -198,8 +198,8 @@ fn picture(
         .collect();
     let options = draw::Options {
         title: title.to_owned(),
-        width: 1440.0,
-        panel_height: 460.0,
+        width: 1200.0,
+        panel_height: 400.0,
         columns: 3,
         png_scale: 1.0,
         ..draw::Options::default()

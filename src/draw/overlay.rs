@@ -164,7 +164,7 @@ fn write_ticks(out: &mut String, width: f64, base: f64, (pair, range): (&[Layer;
         };
         text::push(out, [t * width, base + 13.0], anchor, SMALL, &label);
     }
-    let line = pair.iter().map(|layer| mean_and_worst(layer)).collect::<Vec<_>>().join("   |   ");
+    let line = pair.iter().map(mean_and_worst).collect::<Vec<_>>().join("   |   ");
     text::push(out, [0.0, base + 28.0], Anchor::Start, SMALL, &line);
 }
 

@@ -25,10 +25,11 @@ const TOP: f64 = 46.0;
 /// apart as 2 and 3.
 #[must_use]
 pub fn chart(rows: &[Row], setting: Setting, measure: Measure) -> String {
-    let mut domains: Vec<&str> = rows.iter().map(|row| row.domain).collect();
+    // Rows of a setting stand together, and in it those of a domain.
+    let shown = rows.iter().filter(|row| row.setting == setting);
+    let mut domains: Vec<&str> = shown.clone().map(|row| row.domain).collect();
     domains.dedup();
     let excess = |row: &Row| row.figures.as_ref().map(|f| (measure.value)(f) - 1.0);
-    let shown = rows.iter().filter(|row| row.setting == setting);
     let values: Vec<f64> = shown.filter_map(excess).filter(|v| v.is_finite() && *v > 0.0).collect();
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(0.0, f64::max);
@@ -133,6 +134,22 @@ mod tests {
             .collect();
         assert_eq!(dots.len(), 2);
         assert!(dots[0] > dots[1], "drawn from the last system on: {dots:?}");
+    }
+
+    // spec: K34
+    #[test]
+    fn every_domain_has_one_row_whatever_the_settings() {
+        let mut rows = Vec::new();
+        for setting in Setting::ALL {
+            for domain in ["a", "b"] {
+                rows.push(Row { setting, ..row(domain, System::Graded, 1.1) });
+                rows.push(Row { setting, ..row(domain, System::Afm, 1.2) });
+            }
+        }
+        for setting in Setting::ALL {
+            let svg = chart(&rows, setting, MEAN);
+            assert_eq!((svg.matches(">a<").count(), svg.matches(">b<").count()), (1, 1), "{svg}");
+        }
     }
 
     // spec: K34

@@ -92,7 +92,11 @@ fn write_introduction(out: &mut String, study: &Study<'_>) {
 fn write_claims(out: &mut String, claims: &[Claim]) {
     out.push_str("<h2>What holds</h2>\n");
     for of_report in [true, false] {
-        let heading = if of_report { "Statements of the report" } else { "Statements of ours" };
+        let heading = if of_report {
+            "Statements of the report that the methods come from"
+        } else {
+            "Statements of ours"
+        };
         let _ = writeln!(out, "<h3>{heading}</h3>");
         claims.iter().filter(|c| c.is_of_the_report == of_report).for_each(|c| write_claim(out, c));
     }
