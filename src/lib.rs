@@ -11,9 +11,10 @@
 //! A domain in, a mesh out, and an answer to whether it is one:
 //!
 //! ```
+//! use trigrade::Mesher;
+//! use trigrade::check::check;
 //! use trigrade::domain::naca::naca0012;
 //! use trigrade::mesh::MeshData;
-//! use trigrade::{Mesher, check};
 //!
 //! let domain = naca0012();
 //! let meshed = Mesher::new().growth(0.4).mesh(&domain)?;
@@ -29,7 +30,7 @@
 //! | to do | see |
 //! |---|---|
 //! | mesh a domain | [`Mesher`], [`mesher`] |
-//! | check anybody's mesh | [`check()`](fn@check), [`mod@check`] |
+//! | check anybody's mesh | [`check`] |
 //! | triangulate points | [`triangulate`], [`delaunay`], [`voronoi`] |
 //! | mesh a surface | [`surface_mesher`], [`model`] |
 //! | read and write files | [`mod@format`] |
@@ -78,7 +79,6 @@ pub mod torture;
 #[cfg(feature = "cli")]
 pub mod cli;
 
-pub use check::check;
 pub use mesher::Mesher;
 
 /// The Rust code in the guide compiles and runs.

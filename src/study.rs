@@ -3,7 +3,7 @@
 //! The domains are dense at the boundary and sparse away from it, and made by formulas, so that a
 //! study needs no input ([`domains`]). Each is meshed by six systems ([`System`]) in three settings
 //! ([`Setting`]). The figures of a mesh ([`Figures`]) come from the checker, which knows nothing of
-//! the mesher; statements are judged from the figures alone ([`claims`]).
+//! the mesher; statements are judged from the figures alone ([`mod@claims`]).
 
 pub mod chart;
 pub mod claims;

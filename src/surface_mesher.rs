@@ -164,7 +164,7 @@ const CURVATURE_SAMPLES: u32 = 40;
 /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/two_coons.json");
 /// let model = model_json::read(&std::fs::read(path)?)?;
 /// let meshed = mesh_model(&model, &SurfaceOptions::default(), &mut Unobserved)?;
-/// let report = trigrade::check(&meshed.mesh, None, &Default::default());
+/// let report = trigrade::check::check(&meshed.mesh, None, &Default::default());
 /// assert!(report.passed());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -28,7 +28,7 @@ use std::sync::Arc;
 /// assert!(meshed.mesh.triangles.len() > 1000);
 ///
 /// // Nobody needs to believe it.
-/// let report = trigrade::check(&MeshData::from(&meshed.mesh), Some(&square), &Default::default());
+/// let report = trigrade::check::check(&MeshData::from(&meshed.mesh), Some(&square), &Default::default());
 /// assert!(report.passed());
 /// # Ok::<(), trigrade::mesher::MeshError>(())
 /// ```
