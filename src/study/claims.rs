@@ -270,7 +270,7 @@ mod tests {
             ratio_max: ratio + 1.0,
             angle_min_deg: 60.0 / ratio,
             area_ratio_p99: 1.5 * ratio,
-            far_over_dense: 2.0 / ratio,
+            far_over_dense: 2.5 / ratio,
             passed: true,
         }
     }
