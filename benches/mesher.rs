@@ -16,8 +16,8 @@ use spade::Triangulation as _;
 use std::hint::black_box;
 use trigrade::background::Background;
 use trigrade::check::{CheckOptions, check};
+use trigrade::domain::Domain;
 use trigrade::domain::validate::{Plc, validate};
-use trigrade::domain::{Domain, Loop, LoopRole};
 use trigrade::improve::ImproveOptions;
 use trigrade::mesh::MeshData;
 use trigrade::mesher::{Gradation, Options, Unobserved, mesh_plc};
@@ -45,10 +45,7 @@ fn bump(a: Point2, b: Point2) -> [Point2; 4] {
 }
 
 fn ring(points: Vec<Point2>) -> Domain {
-    let vertices = (0..points.len() as u32).collect();
-    let mut domain = Domain::new(points);
-    domain.loops.push(Loop::new(vertices, 1, LoopRole::Any));
-    domain
+    Domain::of_rings(&[points])
 }
 
 fn sound(domain: &Domain) -> Plc {

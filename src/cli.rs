@@ -2,6 +2,7 @@
 
 pub mod arguments;
 pub mod check;
+pub mod compare;
 pub mod console;
 pub mod convert;
 pub mod delaunay;
@@ -18,6 +19,8 @@ pub mod output;
 pub mod point_file;
 pub mod refinement;
 pub mod size_file;
+pub mod size_layers;
+pub mod study;
 pub mod surface;
 pub mod torture;
 pub mod verdict;
@@ -81,6 +84,8 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
         Verb::Plot(plot) => return convert::plot(plot, cleanup),
         Verb::Torture(torture) => return torture::torture(torture, console, cleanup),
+        Verb::Compare(compare) => return compare::run(compare, cleanup),
+        Verb::Study(study) => return study::run(study, console, cleanup),
         Verb::Explain(explain) => explain::run(explain.id.as_deref(), console)?,
         Verb::Completions(completions) => print_completions(completions.shell, console),
         Verb::Man => print_manual(console)?,
@@ -115,6 +120,7 @@ fn outputs(verb: &Verb) -> &[PathBuf] {
         Verb::Voronoi(voronoi) => &voronoi.outputs,
         Verb::Convert(convert) => &convert.outputs,
         Verb::Plot(plot) => &plot.outputs,
+        Verb::Compare(compare) => &compare.outputs,
         _ => &[],
     }
 }

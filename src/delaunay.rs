@@ -135,6 +135,15 @@ pub enum PointsError {
 ///
 /// # Complexity
 /// [`Engine::Auto`]: `n log n`; 80 bytes a point and the input.
+///
+/// ```
+/// use trigrade::delaunay::{Engine, Options, delaunay};
+/// use trigrade::point::Point2;
+/// let grid: Vec<Point2> = (0..25).map(|i| Point2::from([f64::from(i % 5), f64::from(i / 5)])).collect();
+/// let by = |engine| delaunay(&grid, Options { engine, parallel: false }).map(|made| made.triangles());
+/// assert_eq!(by(Engine::Sweep)?, by(Engine::Watson)?, "the answer is unique, even on a grid");
+/// # Ok::<(), trigrade::delaunay::PointsError>(())
+/// ```
 pub fn delaunay(points: &[Point2], options: Options) -> Result<Delaunay, PointsError> {
     check_points(points)?;
     let run = match options.engine {

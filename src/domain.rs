@@ -160,6 +160,30 @@ impl Domain {
         }
     }
 
+    /// A domain of closed rings under the even-odd rule: a ring in another one is a hole, a ring in
+    /// a hole an island. The edges of ring i carry the marker i + 1. Orientation does not matter.
+    ///
+    /// ```
+    /// use trigrade::domain::Domain;
+    /// let plate = Domain::of_rings(&[
+    ///     vec![[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]],
+    ///     vec![[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]],
+    /// ]);
+    /// assert_eq!((plate.points.len(), plate.loops.len()), (8, 2));
+    /// assert!(trigrade::domain::validate::validate(&plate).is_ok());
+    /// ```
+    #[must_use]
+    pub fn of_rings<P: Copy + Into<Point2>>(rings: &[Vec<P>]) -> Self {
+        let mut domain = Self::new(rings.iter().flatten().map(|&p| p.into()).collect());
+        let mut first = 0;
+        for (marker, ring) in (1..).zip(rings) {
+            let end = first + ring.len() as u32;
+            domain.loops.push(Loop::new((first..end).collect(), marker, LoopRole::Any));
+            first = end;
+        }
+        domain
+    }
+
     /// Box of the points that loops and segments use; of all points when they use none.
     #[must_use]
     pub fn bounding_box(&self) -> Option<BoundingBox> {

@@ -21,6 +21,8 @@ mod frame;
 mod html;
 mod layer;
 mod legend;
+mod metric_layer;
+mod overlay;
 mod page;
 mod palette;
 mod panel;
@@ -37,6 +39,7 @@ pub use findings::highlights;
 pub use frame::{ParseViewError, View};
 pub use html::{Background, Viewer, html};
 pub use layer::{Better, Layer};
+pub use overlay::{comparison, comparison_layers};
 pub use palette::{Palette, ParsePaletteError};
 pub use perspective::{is_in_space, perspective};
 
@@ -198,6 +201,18 @@ pub enum DrawError {
 ///
 /// # Complexity
 /// O(n log n) in triangles; about 30 bytes of SVG a triangle.
+///
+/// ```
+/// use trigrade::draw::{self, Layer, Options, Panel};
+/// use trigrade::mesh::MeshData;
+///
+/// let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = MeshData { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..MeshData::default() };
+/// let layer = Layer::radius_ratio(&mesh);
+/// let svg = draw::svg(&[Panel::new(&mesh, "two").coloured(&layer)], &Options::default())?;
+/// assert!(svg.contains("2 triangles"));
+/// # Ok::<(), draw::DrawError>(())
+/// ```
 pub fn svg(panels: &[Panel<'_>], options: &Options) -> Result<String, DrawError> {
     check_input(panels, options)?;
     Ok(page::Page::new(panels, options).svg())
@@ -229,6 +244,19 @@ pub fn perspective_png(
 ) -> Result<Vec<u8>, DrawError> {
     let (svg, _) = perspective(mesh, title, options)?;
     png::rasterise(&svg, options.png_scale)
+}
+
+/// Draws two meshes as a PNG: the picture of [`comparison`].
+///
+/// # Errors
+/// Those of [`comparison`], and when the picture is too large for memory.
+#[cfg(feature = "png")]
+pub fn comparison_png(
+    panels: &[Panel<'_>; 2],
+    histograms: &[[Layer; 2]],
+    options: &Options,
+) -> Result<Vec<u8>, DrawError> {
+    png::rasterise(&comparison(panels, histograms, options)?, options.png_scale)
 }
 
 /// The widest page: beyond it SVG viewers lose precision.

@@ -341,6 +341,18 @@ pub const READERS: [(MeshForm, Reader); MeshForm::ALL.len()] = [
 /// # Complexity
 /// Time linear in the size of the input (with a logarithm where point numbers have large gaps);
 /// memory at most proportional to it.
+///
+/// ```
+/// use trigrade::format::{MeshForm, MeshView, ReadOptions, WriteOptions, read_mesh, write_mesh};
+/// let off = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let mesh = read_mesh(off, MeshForm::Off, &ReadOptions::default())?;
+/// assert_eq!(mesh.triangles, [[0, 1, 2]]);
+///
+/// let mut vtu = Vec::new();
+/// write_mesh(MeshView::from(&mesh), MeshForm::Vtu, WriteOptions::default(), &mut vtu)?;
+/// assert_eq!(read_mesh(&vtu, MeshForm::Vtu, &ReadOptions::default())?.points, mesh.points);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read_mesh(
     bytes: &[u8],
     form: MeshForm,

@@ -8,6 +8,40 @@
 //! file(domain) + file(mesh) -> check -> report      no arrow from the line above but plain data
 //! ```
 //!
+//! A domain in, a mesh out, and an answer to whether it is one:
+//!
+//! ```
+//! use trigrade::Mesher;
+//! use trigrade::check::check;
+//! use trigrade::domain::naca::naca0012;
+//! use trigrade::mesh::MeshData;
+//!
+//! let domain = naca0012();
+//! let meshed = Mesher::new().growth(0.4).mesh(&domain)?;
+//! let report = check(&MeshData::from(&meshed.mesh), Some(&domain), &Default::default());
+//! assert!(report.passed());
+//! # Ok::<(), trigrade::mesher::MeshError>(())
+//! ```
+//!
+//! Meshes made by this library look like this:
+//!
+#![doc = include_str!("../docs/pictures/mesher.svg")]
+//!
+//! | to do | see |
+//! |---|---|
+//! | mesh a domain | [`Mesher`], [`mesher`] |
+//! | check anybody's mesh | [`check`] |
+//! | triangulate points | [`triangulate`], [`delaunay`], [`voronoi`] |
+//! | mesh a surface | [`surface_mesher`], [`model`] |
+//! | read and write files | [`mod@format`] |
+//! | draw | [`draw`] |
+//! | torture a mesher | [`torture`] |
+//!
+//! # Features
+//!
+//! `cli` (default) is the program and what only it needs; `png` draws PNG pictures. Without either,
+//! the library needs no C compiler, no network and no files.
+//!
 //! The guarantees, each with its strength and its test, are in `SPEC.md`.
 
 #![forbid(unsafe_code)]
@@ -39,10 +73,13 @@ pub mod vector;
 pub mod check;
 pub mod draw;
 pub mod format;
+pub mod study;
 pub mod torture;
 
 #[cfg(feature = "cli")]
 pub mod cli;
+
+pub use mesher::Mesher;
 
 /// The Rust code in the guide compiles and runs.
 #[cfg(doctest)]

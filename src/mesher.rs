@@ -1,5 +1,6 @@
 //! The pipeline: a domain in, a mesh out, a line per stage.
 
+mod builder;
 mod control;
 mod field;
 mod fit;
@@ -7,6 +8,7 @@ mod options;
 mod refined;
 mod scale;
 
+pub use builder::Mesher;
 pub use fit::Fit;
 pub use options::{AreaMax, Count, Gradation, Method, Options, OptionsError};
 
@@ -162,6 +164,15 @@ pub enum MeshError {
 ///
 /// # Complexity
 /// O(n log n) for n boundary points, plus linear time in the number of triangles.
+///
+/// ```
+/// use trigrade::domain::Domain;
+/// use trigrade::mesher::{Options, Unobserved, mesh_domain};
+/// let square = Domain::of_rings(&[vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]]);
+/// let meshed = mesh_domain(&square, &Options::default(), &mut Unobserved)?;
+/// assert_eq!(meshed.mesh.triangles.len(), 2, "as coarse as its boundary");
+/// # Ok::<(), trigrade::mesher::MeshError>(())
+/// ```
 pub fn mesh_domain(
     domain: &Domain,
     options: &Options,

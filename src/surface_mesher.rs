@@ -7,6 +7,8 @@
 //!
 //! The front is the one of the plane: validity is exact in (u, v), lengths and shapes are those of
 //! space (SPEC 12).
+//!
+#![doc = include_str!("../docs/pictures/surface.svg")]
 
 mod chart;
 mod flip;
@@ -154,6 +156,18 @@ const CURVATURE_SAMPLES: u32 = 40;
 ///
 /// # Complexity
 /// Linear in triangles, `n log n` in boundary nodes and samples of the curvature.
+///
+/// ```
+/// use trigrade::format::model_json;
+/// use trigrade::mesher::Unobserved;
+/// use trigrade::surface_mesher::{SurfaceOptions, mesh_model};
+/// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/two_coons.json");
+/// let model = model_json::read(&std::fs::read(path)?)?;
+/// let meshed = mesh_model(&model, &SurfaceOptions::default(), &mut Unobserved)?;
+/// let report = trigrade::check::check(&meshed.mesh, None, &Default::default());
+/// assert!(report.passed());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn mesh_model(
     model: &Model,
     options: &SurfaceOptions,

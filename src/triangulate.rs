@@ -5,6 +5,8 @@
 //! each. Without segments the triangulation is that of the points and covers their hull. With
 //! segments it is constrained, and either covers the hull too or what the domain's own rule leaves
 //! of it.
+//!
+#![doc = include_str!("../docs/pictures/delaunay.svg")]
 
 use crate::background::{Background, BackgroundError};
 use crate::delaunay::hull::convex_hull;
@@ -96,6 +98,16 @@ impl From<BackgroundError> for TriangulateError {
 ///
 /// # Complexity
 /// That of [`delaunay()`].
+///
+/// ```
+/// use trigrade::point::Point2;
+/// use trigrade::triangulate::triangulate_points;
+/// let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.5], [2.0, 0.0]].map(Point2::from);
+/// let made = triangulate_points(&points, Default::default())?;
+/// assert_eq!(made.mesh.triangles.len(), 3);
+/// assert_eq!(made.map[4], made.map[1], "equal points are one");
+/// # Ok::<(), trigrade::triangulate::TriangulateError>(())
+/// ```
 pub fn triangulate_points(
     points: &[Point2],
     options: Options,

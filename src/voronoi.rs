@@ -8,6 +8,8 @@
 //!
 //! Cells of sites on the hull are unbounded: their outer edges are rays, or whole lines when all
 //! sites are on one line. [`Voronoi::clip_to_box`] and [`Voronoi::clip_to_domain`] bound them.
+//!
+#![doc = include_str!("../docs/pictures/voronoi.svg")]
 
 mod box_clip;
 mod clipped;

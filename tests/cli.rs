@@ -2,11 +2,18 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{assert_exit, err, names, out, program, run};
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
+
+fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
+    program::run_with_input(Path::new("."), arguments, input)
+}
 
 /// A square with a square hole, in Triangle's form.
 const PLATE: &str = "\
@@ -36,41 +43,6 @@ const PLATE: &str = "\
 /// The same outer square with two corners exchanged: it crosses itself.
 const BOW_TIE: &str = "4 2 0 0\n1 0 0\n2 4 4\n3 4 0\n4 0 4\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
 
-fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_trigrade"))
-}
-
-fn run(arguments: &[&str]) -> Output {
-    program().args(arguments).stdin(Stdio::null()).output().expect("the program runs")
-}
-
-fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = program()
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    // A program that refuses its arguments may not read at all.
-    let _ = child.stdin.take().expect("piped").write_all(input);
-    child.wait_with_output().expect("the program ends")
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-#[track_caller]
-fn assert_exit(output: &Output, code: i32) {
-    assert_eq!(output.status.code(), Some(code), "{}\n{}", out(output), err(output));
-    assert!(!err(output).contains("panicked"), "{}", err(output));
-}
-
 /// A folder with the plate in it.
 fn folder() -> (TempDir, String) {
     let folder = tempfile::tempdir().expect("a temporary directory");
@@ -86,15 +58,6 @@ fn text(path: &Path) -> String {
 
 fn at(folder: &TempDir, name: &str) -> String {
     text(&folder.path().join(name))
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .expect("a directory")
-        .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
-        .collect();
-    names.sort();
-    names
 }
 
 /// Whether this user may write where the mode says nobody may (root may).
@@ -502,7 +465,7 @@ fn explain_prints_the_rule() {
     assert_exit(&output, 0);
     assert!(out(&output).contains("cli.explain") && out(&output).contains("strength"));
     assert_eq!(out(&run(&["explain", "cli.explain"])), out(&output));
-    let unknown = run(&["explain", "K33"]);
+    let unknown = run(&["explain", "K303"]);
     assert_exit(&unknown, 2);
     assert!(err(&unknown).contains("did you mean"), "{}", err(&unknown));
     assert!(out(&run(&["explain"])).lines().count() > 5, "the list of all rules");
@@ -591,6 +554,59 @@ fn plot_draws() {
     assert!(fs::read(&png).expect("there").starts_with(b"\x89PNG"));
     assert_exit(&run(&["plot", &off, "-o", &svg, "--window", "2,0,0,2"]), 2);
     assert_exit(&run(&["plot", &off, "-o", &at(&folder, "b.off")]), 2);
+}
+
+// spec: K30
+#[test]
+fn plot_colours_by_any_metric_and_marks_what_check_finds() {
+    let (folder, plate) = folder();
+    let [off, svg, html] = ["a.off", "a.svg", "a.html"].map(|n| at(&folder, n));
+    assert_exit(&run(&["mesh", &plate, "-o", &off]), 0);
+    let mut pictures = Vec::new();
+    for colour in ["radius_ratio", "min_angle", "gradation", "area_spread", "none"] {
+        assert_exit(&run(&["plot", &off, "-o", &svg, "--colour", colour]), 0);
+        pictures.push(fs::read_to_string(&svg).expect("text"));
+    }
+    for (i, picture) in pictures.iter().enumerate() {
+        assert!(!pictures[..i].contains(picture), "{i}");
+    }
+    let unknown = run(&["plot", &off, "-o", &svg, "--colour", "beauty"]);
+    assert_exit(&unknown, 2);
+    assert!(err(&unknown).contains("radius_ratio"), "{}", err(&unknown));
+
+    let marks = |mesh: &str| {
+        assert_exit(&run(&["plot", mesh, "-o", &html, "--domain", &plate]), 0);
+        let page = fs::read_to_string(&html).expect("text");
+        assert!(page.contains("id=\"data-spacing\"") && page.contains("data-background-points"));
+        page.contains("\"label\":\"M")
+    };
+    assert!(!marks(&off), "a sound mesh has no findings");
+    let text = fs::read_to_string(&off).expect("text");
+    let broken = at(&folder, "b.off");
+    let last = text.trim_end().rfind('\n').expect("lines");
+    let count = text.lines().nth(1).expect("counts");
+    let numbers: Vec<usize> =
+        count.split_whitespace().map(|n| n.parse().expect("a count")).collect();
+    let fewer = format!("{} {} {}", numbers[0], numbers[1] - 1, numbers[2]);
+    fs::write(&broken, text[..=last].replacen(count, &fewer, 1)).expect("written");
+    assert!(marks(&broken), "a triangle is missing");
+}
+
+// spec: G21
+#[test]
+fn a_viewer_of_a_new_mesh_carries_its_size_field() {
+    let (folder, plate) = folder();
+    let html = at(&folder, "a.html");
+    let page = |arguments: &[&str]| {
+        let words = [&["mesh", plate.as_str(), "-o", &html], arguments].concat();
+        assert_exit(&run(&words), 0);
+        fs::read_to_string(&html).expect("text")
+    };
+    let graded = page(&["--spacing", "0.5"]);
+    assert!(graded.contains("wanted spacing") && graded.contains("id=\"data-spacing\""));
+    let refined = page(&["--method", "delaunay", "--min-angle", "20"]);
+    assert!(!refined.contains("\"wanted spacing\""), "no spacing was asked for");
+    assert!(!refined.contains("id=\"data-spacing\"") && refined.contains("data-background-points"));
 }
 
 #[test]

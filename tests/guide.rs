@@ -3,7 +3,7 @@
 //!
 //! A block is a session: `$ trigrade ...` runs the program, `$ cat > FILE <<'END'` writes a file,
 //! `$ echo $?` shows the last exit code, `$ head -N FILE` the beginning of a file. All blocks of a page share a folder, in which
-//! the domains of `examples/domains` lie. Lines after a command are what it prints, standard output
+//! the domains of `examples/domains` lie, and those of `examples/models` in `models`. Lines after a command are what it prints, standard output
 //! first; `...` stands for any text within a line, and alone for any number of lines.
 //! `UPDATE_GUIDE=1 cargo test --test guide` writes what the commands print into the pages, with
 //! times replaced by `...`; review the difference as text.
@@ -29,15 +29,17 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// A folder with the example domains.
+/// A folder with the example domains, and the models in a folder of their own.
 fn playground() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    let examples = root().join("examples/domains");
-    for entry in fs::read_dir(examples).expect("the examples are there") {
-        let path = entry.expect("an entry").path();
-        if path.is_file() {
+    let models = folder.path().join("models");
+    fs::create_dir(&models).expect("made");
+    for (from, to) in [("domains", folder.path()), ("models", &models)] {
+        let examples = root().join("examples").join(from);
+        for entry in fs::read_dir(examples).expect("the examples are there") {
+            let path = entry.expect("an entry").path();
             let name = path.file_name().expect("a name");
-            fs::copy(&path, folder.path().join(name)).expect("copied");
+            fs::copy(&path, to.join(name)).expect("copied");
         }
     }
     folder
@@ -200,10 +202,14 @@ fn every_command_of_the_guide_prints_what_the_page_shows() {
     let update = std::env::var_os("UPDATE_GUIDE").is_some();
     let mut all = Vec::new();
     let mut commands = 0;
-    for path in pages() {
+    // Pages do not know of each other, so they are played beside each other.
+    let players = pages().into_iter().map(|path| {
         let page = fs::read_to_string(&path).expect("text");
         commands += page.lines().filter(|line| line.starts_with("$ trigrade")).count();
-        let (shown, faults) = play(&page);
+        (path, std::thread::spawn(move || play(&page)))
+    });
+    for (path, player) in players.collect::<Vec<_>>() {
+        let (shown, faults) = player.join().expect("a page is played to its end");
         if update {
             fs::write(&path, shown).expect("written");
         } else {

@@ -2,10 +2,13 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{assert_exit, err, out};
 use serde_json::Value;
 use std::fs;
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 use tempfile::TempDir;
 
 /// A square of nine points, one of them twice.
@@ -17,40 +20,11 @@ const WALLS: &str = "\
 {\"outer\": [[0,0],[4,0],[4,4],[0,4]], \"segments\": [[[1,1],[3,3]],[[1,3],[3,1]]]}";
 
 fn run(folder: &TempDir, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trigrade"))
-        .args(arguments)
-        .current_dir(folder.path())
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program runs")
+    program::run_in(folder.path(), arguments)
 }
 
 fn run_with_input(folder: &TempDir, arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_trigrade"))
-        .args(arguments)
-        .current_dir(folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    // A program that refuses its arguments may not read at all.
-    let _ = child.stdin.take().expect("piped").write_all(input.as_bytes());
-    child.wait_with_output().expect("the program ends")
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-#[track_caller]
-fn assert_exit(output: &Output, code: i32) {
-    assert_eq!(output.status.code(), Some(code), "{}\n{}", out(output), err(output));
-    assert!(!err(output).contains("panicked"), "{}", err(output));
+    program::run_with_input(folder.path(), arguments, input.as_bytes())
 }
 
 fn folder(files: &[(&str, &str)]) -> TempDir {

@@ -2,13 +2,13 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::run;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn trigrade(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trigrade")).args(arguments).output().expect("the program runs")
-}
+use std::process::Output;
 
 fn example(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models");
@@ -19,11 +19,10 @@ fn text(path: &Path) -> String {
     path.display().to_string()
 }
 
+#[track_caller]
 fn assert_exit(output: &Output, exit: i32) -> String {
-    let told = String::from_utf8_lossy(&output.stderr).into_owned()
-        + &String::from_utf8_lossy(&output.stdout);
-    assert_eq!(output.status.code(), Some(exit), "{told}");
-    told
+    program::assert_exit(output, exit);
+    program::err(output) + &program::out(output)
 }
 
 // spec: K11
@@ -36,18 +35,18 @@ fn a_model_is_meshed_in_every_form_and_checked_against_itself() {
     let model = example("sphere.json");
     let mut arguments = vec!["mesh".to_owned(), model.clone(), "--spacing".into(), "0.3".into()];
     arguments.extend(outputs.iter().flat_map(|path| ["-o".to_owned(), text(path)]));
-    let told = assert_exit(&trigrade(&arguments.iter().map(String::as_str).collect::<Vec<_>>()), 0);
+    let told = assert_exit(&run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()), 0);
     assert!(told.contains("chord error") && told.contains("closed"), "{told}");
     for path in &outputs {
-        let checked = trigrade(&["check", &text(path), "--surface", &model, "--closed"]);
+        let checked = run(&["check", &text(path), "--surface", &model, "--closed"]);
         let told = assert_exit(&checked, 0);
         assert!(told.contains("Euler number 2, closed"), "{told}");
     }
     let strict = ["check", &text(&outputs[0]), "--surface", &model, "--chord-error", "1e-6"];
-    let told = assert_exit(&trigrade(&strict), 1);
+    let told = assert_exit(&run(&strict), 1);
     assert!(told.contains("error[S8]"), "{told}");
     let other = ["check", &text(&outputs[0]), "--surface", &example("torus.json")];
-    assert!(assert_exit(&trigrade(&other), 1).contains("error[S10]"));
+    assert!(assert_exit(&run(&other), 1).contains("error[S10]"));
 }
 
 // spec: K11
@@ -58,7 +57,7 @@ fn curvature_flags_and_json_reports() {
     let model = example("torus.json");
     let count = |more: &[&str]| {
         let all = [&["mesh", "--json", "-o", &mesh, &model][..], more].concat();
-        let output = trigrade(&all);
+        let output = run(&all);
         assert_exit(&output, 0);
         let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(json["verdict"], "passed");
@@ -77,13 +76,13 @@ fn what_cannot_be_done_is_told() {
     let mesh = text(&folder.path().join("a.off"));
     let broken = folder.path().join("broken.json");
     std::fs::write(&broken, r#"{"patches": [{"kind": "disk"}]}"#).expect("written");
-    let told = assert_exit(&trigrade(&["mesh", &text(&broken), "-o", &mesh]), 2);
+    let told = assert_exit(&run(&["mesh", &text(&broken), "-o", &mesh]), 2);
     assert!(told.contains("$.patches[0].kind"), "{told}");
     let none = folder.path().join("none.json");
     std::fs::write(&none, r#"{"patches": []}"#).expect("written");
-    assert!(assert_exit(&trigrade(&["mesh", &text(&none), "-o", &mesh]), 1).contains("no patch"));
+    assert!(assert_exit(&run(&["mesh", &text(&none), "-o", &mesh]), 1).contains("no patch"));
     let model = example("sphere.json");
-    let told = assert_exit(&trigrade(&["mesh", &model, "--spacing", "1e-5", "-o", &mesh]), 2);
+    let told = assert_exit(&run(&["mesh", &model, "--spacing", "1e-5", "-o", &mesh]), 2);
     assert!(told.contains("--max-triangles"), "{told}");
     assert!(!folder.path().join("a.off").exists(), "nothing is left behind");
 }
@@ -100,8 +99,8 @@ fn a_plane_domain_may_have_curved_loops() {
     let loops =
         format!(r#"{{"loops": [{{"curves": [{spline}, {arc}]}}, {{"curves": [{hole}]}}]}}"#);
     std::fs::write(&domain, &loops).expect("written");
-    assert_exit(&trigrade(&["mesh", &text(&domain), "-o", &mesh]), 0);
-    assert_exit(&trigrade(&["check", &mesh, "--domain", &text(&domain)]), 0);
+    assert_exit(&run(&["mesh", &text(&domain), "-o", &mesh]), 0);
+    assert_exit(&run(&["check", &mesh, "--domain", &text(&domain)]), 0);
     for (from, to, expected) in [
         ("[6, 0], [3, 4]", "[6, 0.25], [3, 4]", "error[S5]"),
         (r#", "spacing": 0.4"#, "", "spacing"),
@@ -110,7 +109,7 @@ fn a_plane_domain_may_have_curved_loops() {
         ("[2, -1]", "[2, -1, 1]", "plane"),
     ] {
         std::fs::write(&domain, loops.replacen(from, to, 1)).expect("written");
-        let told = assert_exit(&trigrade(&["mesh", &text(&domain), "-o", &mesh]), 2);
+        let told = assert_exit(&run(&["mesh", &text(&domain), "-o", &mesh]), 2);
         assert!(told.contains(expected), "{told}");
     }
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use trigrade::draw::{self, Background, Highlight, Viewer};
+use trigrade::check::Metric;
+use trigrade::draw::{self, Background, Highlight, Layer, Viewer};
 use trigrade::mesh::{MarkedEdge, MeshData, NO_POINT};
 
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
@@ -81,6 +82,28 @@ fn facts_of_a_triangle_are_right() {
     assert_eq!(fact(&dom, "smallest angle [°]").as_deref(), Some("36.87"));
 }
 
+// spec: G22
+#[test]
+fn metrics_have_the_values_of_the_checker() {
+    let rim = (0..7).map(|i| {
+        let (angle, r) = (f64::from(i), 1.0 + f64::from(i % 3));
+        [r * libm::cos(angle), r * libm::sin(angle), 0.0]
+    });
+    let points = [[0.0; 3]].into_iter().chain(rim).collect();
+    let mesh = MeshData {
+        points,
+        triangles: (1..7).map(|i| [0, i, i + 1]).collect(),
+        ..MeshData::default()
+    };
+    let Some(dom) = shown(&Viewer::new("fan", &mesh), "triangle=2&facts=all") else { return };
+    for metric in Metric::all() {
+        let shown = fact(&dom, metric.name()).unwrap_or_else(|| panic!("{metric}: {dom}"));
+        let shown: f64 = shown.parse().expect("a number");
+        let value = Layer::metric(&mesh, metric).values[2];
+        assert!((shown / value - 1.0).abs() < 1e-4, "{metric}: {shown} and {value}");
+    }
+}
+
 // spec: G12
 #[test]
 fn without_webgl_a_canvas_shows_the_same() {
@@ -101,7 +124,7 @@ fn broken_and_empty_meshes_are_shown_as_far_as_they_go() {
     let viewer = Viewer::new("broken", &mesh);
     let empty = MeshData::default();
     for renderer in ["webgl2", "canvas"] {
-        let address = format!("triangle=2&renderer={renderer}&measure=area_ratio");
+        let address = format!("triangle=2&renderer={renderer}&measure=neighbour_area_ratio");
         let Some(dom) = shown(&viewer, &address) else { return };
         assert!(dom.contains("data-ready=") && dom.contains("2 not drawn"), "{dom}");
         assert!(fact(&dom, "cannot be drawn").is_some());

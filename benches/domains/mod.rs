@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
+use trigrade::domain::Domain;
 use trigrade::domain::naca::symmetric_section;
-use trigrade::domain::{Domain, Loop, LoopRole};
 use trigrade::format::domain_file::{DomainForm, ReadOptions, read_domain};
 use trigrade::point::Point2;
 
@@ -17,14 +17,7 @@ pub struct Named {
 
 /// A domain of closed rings, holes by the even-odd rule.
 pub fn rings(rings: &[Vec<Point2>]) -> Domain {
-    let mut domain = Domain::new(rings.concat());
-    let mut first = 0;
-    for (marker, ring) in (1..).zip(rings) {
-        let vertices = (first..first + ring.len() as u32).collect();
-        domain.loops.push(Loop::new(vertices, marker, LoopRole::Any));
-        first += ring.len() as u32;
-    }
-    domain
+    Domain::of_rings(rings)
 }
 
 /// `n` points on a circle.

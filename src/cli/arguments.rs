@@ -1,10 +1,15 @@
 //! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
 //! page, the completions and the tests.
 
+mod plot;
+mod study;
+
+pub use plot::{Colour, PlotArguments};
+pub use study::{CompareArguments, StudyArguments, StudySize};
+
 use crate::check::report::Form;
 use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::delaunay::Engine;
-use crate::draw::View;
 use crate::improve::ImproveOptions;
 use crate::point::Point2;
 use crate::size::{Expression, SizeSource};
@@ -78,6 +83,10 @@ pub enum Verb {
     Plot(PlotArguments),
     /// Torture any mesher with adversarial boundaries, and shrink what it gets wrong.
     Torture(Box<TortureArguments>),
+    /// Compare two meshes: every metric, histograms, both side by side.
+    Compare(Box<CompareArguments>),
+    /// Set graded triangulation beside its rivals on eleven domains.
+    Study(StudyArguments),
     /// Print the completion script of a shell.
     Completions(CompletionsArguments),
     /// Print the manual page (roff).
@@ -641,33 +650,6 @@ pub struct ConvertArguments {
     /// `vtu-compressed` name encodings too.
     #[arg(long, value_name = "FORM")]
     pub form: Option<String>,
-}
-
-/// `trigrade plot`
-#[derive(Clone, Debug, Args)]
-pub struct PlotArguments {
-    /// The mesh; `-` is standard input.
-    #[arg(value_name = "MESH", value_hint = ValueHint::FilePath)]
-    pub mesh: PathBuf,
-    /// How the mesh is read.
-    #[command(flatten)]
-    pub reading: MeshReading,
-    /// The picture: .svg, .png or .html (a viewer), `-` is standard output; repeatable.
-    #[arg(long = "output", short, value_name = "OUT", required = true)]
-    pub outputs: Vec<PathBuf>,
-    /// Form of the pictures, whatever their extension (needed for `-o -`).
-    #[arg(long, value_name = "FORM")]
-    pub form: Option<String>,
-    /// Draw only this part of the plane.
-    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
-    pub window: Option<View>,
-    /// The line above the picture; the file's name if not given.
-    #[arg(long, value_name = "TEXT")]
-    pub title: Option<String>,
-    /// Width of the picture in pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1200)]
-    #[arg(value_parser = clap::value_parser!(u32).range(16..=20_000))]
-    pub width: u32,
 }
 
 /// `trigrade torture`

@@ -2,14 +2,20 @@
 
 use super::arguments::{ConvertArguments, PlotArguments};
 use super::console::Console;
+use super::domain_file::load_domain;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, output_files};
 use super::mesh::count;
 use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
+use super::size_layers::{NodalSpacing, nodal_spacing};
+use super::verdict::check_mesh;
+use crate::domain::validate::validate;
+use crate::draw::{self, Highlight};
 use crate::format::MeshView;
 use crate::mesh::MeshData;
+use crate::mesher::Options;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -40,7 +46,8 @@ pub fn convert(
 pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Failure> {
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     if let Some(file) = files.iter().find(|file| !file.form.is_picture()) {
-        let diagnostic = Diagnostic::new("a picture is .svg or .png").at(file.path.display());
+        let diagnostic =
+            Diagnostic::new("a picture is .svg, .png or .html").at(file.path.display());
         return Err(Failure::cannot_run(diagnostic.help("`trigrade convert` writes meshes")));
     }
     let LoadedMesh { name, path, mesh, .. } = load_mesh(&arguments.mesh, &arguments.reading)?;
@@ -49,13 +56,32 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
         last.map_or_else(|| name.clone(), |last| last.to_string_lossy().into_owned())
     };
     let title = arguments.title.clone().unwrap_or_else(file_name);
+    let (highlights, background) = match &arguments.domain {
+        Some(path) => against(&mesh, path, arguments)?,
+        None => (Vec::new(), None),
+    };
     let drawing = Drawing {
         view: arguments.window,
         width: f64::from(arguments.width),
+        colour: arguments.colour.0,
+        highlights,
+        background,
         ..Drawing::of(&mesh, title)
     };
     write_files(&files, &mesh, &drawing, cleanup)?;
     Ok(outcome(&name, &mesh, &files))
+}
+
+/// The findings of a mesh against its domain, and the domain's background mesh.
+fn against(
+    mesh: &MeshData,
+    path: &std::path::Path,
+    arguments: &PlotArguments,
+) -> Result<(Vec<Highlight>, Option<NodalSpacing>), Failure> {
+    let (_, domain) = load_domain(path, &arguments.domain_reading())?;
+    let report = check_mesh(mesh, Some(&domain));
+    let background = validate(&domain).ok().and_then(|plc| nodal_spacing(plc, &Options::default()));
+    Ok((draw::highlights(&report), background))
 }
 
 fn write_files(

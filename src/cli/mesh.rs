@@ -5,13 +5,14 @@ use super::check::write_json;
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
-use super::forms::{OutputFile, output_files};
+use super::forms::{OutputFile, OutputForm, output_files};
 use super::input::Input;
 use super::mesh_file::{self, Drawing, parse, unreadable, written_meshes};
 use super::outcome::{Checked, Outcome, file_names, output_names};
 use super::output::{Cleanup, Outputs};
 use super::refinement::Refinement;
 use super::size_file::load_size_field;
+use super::size_layers::{NodalSpacing, nodal_spacing, spacing_layers};
 use super::surface;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, seconds, stages, time, total};
@@ -63,13 +64,16 @@ pub fn run(
         summary.prediction = Some(predict(plc, &options)?);
         return Ok(summary.outcome(watch.finish(), arguments.timings));
     }
+    let has_viewer = files.iter().any(|file| file.form == OutputForm::Html);
+    let shown = has_viewer.then(|| plc.clone());
     let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
     summary.note(&meshed, &options);
     if let Count::Target(target) = options.count {
         summary.target = Some(target);
     }
-    write_all(&mut outputs, &files, &meshed)?;
+    let background = shown.and_then(|plc| nodal_spacing(plc, &options));
+    write_all(&mut outputs, &files, &meshed, background)?;
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
@@ -137,10 +141,25 @@ pub fn no_mesh(error: &MeshError) -> Failure {
 }
 
 /// Writes every file into its stage.
-fn write_all(outputs: &mut Outputs, files: &[OutputFile], meshed: &Meshed) -> Result<(), Failure> {
+fn write_all(
+    outputs: &mut Outputs,
+    files: &[OutputFile],
+    meshed: &Meshed,
+    background: Option<NodalSpacing>,
+) -> Result<(), Failure> {
     let needs_picture = files.iter().any(|file| file.form.is_picture());
     let data = if needs_picture { MeshData::from(&meshed.mesh) } else { MeshData::default() };
-    let drawing = Drawing::of(&data, "");
+    let layers = match background {
+        Some(_) => spacing_layers(&data, &meshed.spacing),
+        None => Vec::new(),
+    };
+    // Without a field the background is a mesh and no more.
+    let spacing = |nodal: NodalSpacing| match layers.is_empty() {
+        true => NodalSpacing { spacing: Vec::new(), ..nodal },
+        false => nodal,
+    };
+    let background = background.map(spacing);
+    let drawing = Drawing { layers, background, ..Drawing::of(&data, "") };
     for (i, file) in files.iter().enumerate() {
         mesh_file::write(outputs, i, file, MeshView::from(&meshed.mesh), &drawing)?;
     }

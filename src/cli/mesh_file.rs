@@ -5,8 +5,10 @@ use super::failure::{Diagnostic, EXIT_CANNOT_RUN, EXIT_FINDINGS, Failure};
 use super::forms::{OutputFile, OutputForm, is_read, mesh_to_read};
 use super::input::load;
 use super::output::Outputs;
+use super::size_layers::NodalSpacing;
+use crate::check::Metric;
 use crate::check::certificate::FileHash;
-use crate::draw::{self, DrawError, Highlight, Layer, Panel, View, Viewer};
+use crate::draw::{self, Background, DrawError, Highlight, Layer, Panel, View, Viewer};
 use crate::format::mesh_json;
 use crate::format::{
     At, Companion, MeshForm, MeshView, ReadError, ReadOptions, WriteError, read_mesh,
@@ -180,7 +182,7 @@ pub fn write(
                 .map_err(Refusal::from)
                 .and_then(|png| out.write_all(&png).map_err(Refusal::Disk)),
             (OutputForm::Html, _) => drawing
-                .html()
+                .html(&file_name(&file.path))
                 .map_err(Refusal::from)
                 .and_then(|html| out.write_all(html.as_bytes()).map_err(Refusal::Disk)),
         };
@@ -197,6 +199,11 @@ pub fn write(
         Some(message) => Err(Failure::cannot_run(Diagnostic::new(message).at(file.path.display()))),
         None => written,
     }
+}
+
+/// The last part of a path, for people.
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// Why a file was not written.
@@ -235,6 +242,12 @@ pub struct Drawing<'a> {
     pub width: f64,
     /// What it points at.
     pub highlights: Vec<Highlight>,
+    /// The metric that colours it; `None` leaves it without colours.
+    pub colour: Option<Metric>,
+    /// Further values of the triangles, for the viewer.
+    pub layers: Vec<Layer>,
+    /// The background mesh with its spacings, for the viewer.
+    pub background: Option<NodalSpacing>,
 }
 
 impl<'a> Drawing<'a> {
@@ -247,6 +260,9 @@ impl<'a> Drawing<'a> {
             view: None,
             width: draw::Options::default().width,
             highlights: Vec::new(),
+            colour: Some(Metric::RadiusRatio),
+            layers: Vec::new(),
+            background: None,
         }
     }
 
@@ -259,8 +275,17 @@ impl<'a> Drawing<'a> {
         self.view.is_none() && self.highlights.is_empty() && draw::is_in_space(self.mesh)
     }
 
-    fn panel<'b>(&'b self, layer: &'b Layer) -> Panel<'b> {
-        let mut panel = Panel::new(self.mesh, self.title.clone()).coloured(layer);
+    /// The values that colour it.
+    fn layer(&self) -> Option<Layer> {
+        match self.colour? {
+            // Signed areas play no part in it, so that broken meshes are drawn as usual.
+            Metric::RadiusRatio => Some(Layer::radius_ratio(self.mesh)),
+            other => Some(Layer::metric(self.mesh, other)),
+        }
+    }
+
+    fn panel<'b>(&'b self, layer: Option<&'b Layer>) -> Panel<'b> {
+        let mut panel = Panel { layer, ..Panel::new(self.mesh, self.title.clone()) };
         panel.highlights = &self.highlights;
         match self.view {
             Some(view) => panel.cropped(view),
@@ -268,7 +293,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// As SVG: coloured by R / 2r, or a surface in space shaded.
+    /// As SVG: coloured by a metric, or a surface in space shaded.
     ///
     /// # Errors
     /// A view or page that cannot be drawn.
@@ -276,8 +301,8 @@ impl<'a> Drawing<'a> {
         if self.is_in_space() {
             return Ok(draw::perspective(self.mesh, &self.title, &self.options())?.0);
         }
-        let layer = Layer::radius_ratio(self.mesh);
-        draw::svg(&[self.panel(&layer)], &self.options())
+        let layer = self.layer();
+        draw::svg(&[self.panel(layer.as_ref())], &self.options())
     }
 
     /// As PNG, likewise.
@@ -288,16 +313,23 @@ impl<'a> Drawing<'a> {
         if self.is_in_space() {
             return draw::perspective_png(self.mesh, &self.title, &self.options());
         }
-        let layer = Layer::radius_ratio(self.mesh);
-        draw::png(&[self.panel(&layer)], &self.options())
+        let layer = self.layer();
+        draw::png(&[self.panel(layer.as_ref())], &self.options())
     }
 
-    /// As a viewer in one HTML file.
+    /// As a viewer in one HTML file, which is called `name` unless there is a title.
     ///
     /// # Errors
     /// None that a mesh alone can give.
-    pub fn html(&self) -> Result<String, DrawError> {
-        let viewer = Viewer { highlights: &self.highlights, ..Viewer::new(&self.title, self.mesh) };
+    pub fn html(&self, name: &str) -> Result<String, DrawError> {
+        let title = if self.title.is_empty() { name } else { &self.title };
+        let background = self.background.as_ref();
+        let viewer = Viewer {
+            highlights: &self.highlights,
+            layers: &self.layers,
+            background: background.map(|b| Background { mesh: &b.mesh, spacing: &b.spacing }),
+            ..Viewer::new(title, self.mesh)
+        };
         draw::html(&viewer)
     }
 }

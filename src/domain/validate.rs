@@ -86,6 +86,14 @@ pub struct Plc {
 /// O((n + k) log n) for n points and edges and k splits if there are no faults. Otherwise the
 /// search for further crossings and overlaps is cut off after work and a number of faults
 /// proportional to the input, which is then a fault of its own ([`Fault::ListStopped`]).
+///
+/// ```
+/// use trigrade::domain::Domain;
+/// use trigrade::domain::validate::validate;
+/// let bow_tie = Domain::of_rings(&[vec![[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]]]);
+/// let faults = validate(&bow_tie).unwrap_err();
+/// assert_eq!(faults[0].id(), "D8");
+/// ```
 pub fn validate(domain: &Domain) -> Result<Plc, Vec<Fault>> {
     let mut draft = Draft::new(domain);
     draft.faults.extend(nesting::check_roles(domain));

@@ -23,8 +23,7 @@ const SCRIPTS: [&str; 6] = [
 
 /// What the viewer shows.
 ///
-/// The usual measures (R/(2r), angles, edge ratio, area, area ratio to neighbours) are computed
-/// by the viewer; `layers` adds further ones. Playback lays the triangles in the mesh's order,
+/// Every metric of the checker is computed by the viewer; `layers` adds further values. Playback lays the triangles in the mesh's order,
 /// which for a mesh of the front is the order in which they were laid.
 #[derive(Clone, Copy, Debug)]
 pub struct Viewer<'a> {
@@ -32,7 +31,7 @@ pub struct Viewer<'a> {
     pub title: &'a str,
     /// The mesh, in the plane or (if some z is not 0) in space.
     pub mesh: &'a MeshData,
-    /// Further values of the triangles; the first one is shown first.
+    /// Further values of the triangles.
     pub layers: &'a [Layer],
     /// Findings: listed, marked, and zoomed to on a click.
     pub highlights: &'a [Highlight],
@@ -70,9 +69,9 @@ impl<'a> Viewer<'a> {
 ///
 /// What it shows first can be chosen after `#` in its address, e.g.
 /// `view.html#measure=min_angle&view=0,0,1,1&show=background&triangle=12`; the keys are `measure`
-/// (`radius_ratio`, `min_angle`, `max_angle`, `edge_ratio`, `area`, `area_ratio`, `edge_length`,
-/// `order`, `layer-0`, ...), `palette`, `view`, `triangle`, `finding` (from 1), `frame`, `show`,
-/// `hide` and `renderer=canvas`.
+/// (a [`Metric`](crate::check::Metric) by its name, `edge_length`, `order`, `layer-0`, ...),
+/// `palette`, `view`, `triangle`, `finding` (from 1), `frame`, `show`, `hide`, `facts=all` (every
+/// measure of the chosen triangle) and `renderer=canvas`.
 ///
 /// # Errors
 /// [`DrawError::ValueCount`] when a layer does not fit the mesh, and [`DrawError::SpacingCount`]
@@ -241,6 +240,14 @@ mod tests {
         let html = html(&Viewer::new("m", &mesh)).expect("fits");
         assert_eq!(meta_of(&html)["dimension"], 3);
         assert_eq!(decoded(&html, "points").map(|b| b.len()), Some(4 * 3 * 8));
+    }
+
+    // spec: G22
+    #[test]
+    fn every_metric_of_the_checker_is_offered() {
+        for metric in crate::check::Metric::all() {
+            assert!(SCRIPTS[1].contains(&format!("id: \"{metric}\"")), "{metric}");
+        }
     }
 
     // spec: G11

@@ -62,6 +62,9 @@ impl<'a> Page<'a> {
     }
 
     fn add_row(&mut self, panels: &'a [Panel<'a>], sizes: &[[f64; 2]], width: f64) {
+        if !self.cells.is_empty() {
+            self.height += GAP;
+        }
         let top = self.height;
         let tallest = sizes.iter().fold(0.0_f64, |h, s| h.max(s[1]));
         let below = top + CAPTION + tallest + 10.0;

@@ -79,6 +79,14 @@ pub struct ReadOptions<'a> {
 /// # Errors
 /// The first thing that keeps the file from being understood, with its line or JSON path. Memory
 /// and time are bounded by a multiple of the file's size, whatever numbers it states.
+///
+/// ```
+/// use trigrade::format::domain_file::{DomainForm, ReadOptions, read_domain};
+/// let json = br#"{"outer": [[0, 0], [4, 0], [4, 4], [0, 4]], "holes": [[[1, 1], [2, 1], [1, 2]]]}"#;
+/// let domain = read_domain(json, DomainForm::Json, &ReadOptions::default())?;
+/// assert_eq!(domain.loops.len(), 2);
+/// # Ok::<(), trigrade::format::domain_file::DomainReadError>(())
+/// ```
 pub fn read_domain(
     bytes: &[u8],
     form: DomainForm,

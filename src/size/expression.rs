@@ -105,6 +105,15 @@ impl Expression {
     ///
     /// # Errors
     /// The first fault and its column.
+    ///
+    /// ```
+    /// use trigrade::mesher::{Gradation, Mesher};
+    /// use trigrade::size::Expression;
+    /// let finer_at_the_axis = Expression::parse("0.02 + 0.1*abs(y)")?;
+    /// let mesher = Mesher::new().gradation(Gradation::Expression(finer_at_the_axis));
+    /// assert_eq!(Expression::parse("0.02 + width").unwrap_err().column, 8);
+    /// # Ok::<(), trigrade::size::ExpressionError>(())
+    /// ```
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
         scan::check(text)?;
         let plain = scan::without_exponents(text)?;

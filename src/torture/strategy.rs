@@ -2,7 +2,7 @@
 //!
 //! | feature | what it gives |
 //! |---|---|
-//! | `proptest` | [`cases`](proptest::cases), a strategy |
+//! | `proptest` | `proptest::cases`, a strategy |
 //! | `quickcheck` | `impl quickcheck::Arbitrary for Case` |
 //! | `arbitrary` | `impl arbitrary::Arbitrary for Case`, for fuzz targets |
 //!

@@ -266,6 +266,7 @@ function showFacts(t) {
   }
   const value = valuesOf(state.measure.id)[t];
   if (state.measure.id !== "radius_ratio") row(state.measure.name, short(value));
+  if (wanted.get("facts") === "all") for (const m of measures) row(m.id, short(valuesOf(m.id)[t]));
   box.append(table);
 }
 

@@ -36,20 +36,21 @@ const area = () => ((!spatial && scaled.cross < 0 ? -1 : 1) * scaled.twice * sca
 const angle = (i) => (scaled.size > 0 ? (Math.atan2(scaled.twice, -dot((i + 1) % 3, (i + 2) % 3)) * 180) / Math.PI : NaN);
 const length = (i) => scaled.length[i] * scaled.size;
 
-/** Largest ratio of the area to that of a neighbour, or its inverse. */
-function neighbourRatios() {
-  const area = valuesOf("area"), out = new Float64Array(count).fill(NaN);
+const perimeter = () => length(0) + length(1) + length(2);
+
+/** Largest ratio of a size to that of a neighbour, or its inverse. */
+function neighbourRatios(size) {
+  const out = new Float64Array(count).fill(NaN);
   const first = new Int32Array(edges.other.length).fill(-1);
-  const meet = (s, t, e) => {
-    const r = area[s] / area[t], worst = Math.abs(r < 1 && r > -1 ? 1 / r : r);
+  const meet = (s, t) => {
+    const r = size[s] / size[t], worst = Math.abs(r < 1 && r > -1 ? 1 / r : r);
     for (const x of [s, t]) if (!(out[x] >= worst)) out[x] = worst;
-    return e;
   };
   for (let i = 0; i < 3 * count; i++) {
     const e = edges.side[i], t = (i / 3) | 0;
     if (e === 0xffffffff) continue;
     if (first[e] < 0) first[e] = t;
-    else meet(first[e], t, e);
+    else meet(first[e], t);
   }
   return out;
 }
@@ -63,18 +64,37 @@ const shaped = (of) => () => {
   return out;
 };
 
-/** Every measure: better is "low", "high" or "" (neither); log ones are binned by logarithm. */
+const lengths = () => [length(0), length(1), length(2)];
+const angles = () => [angle(0), angle(1), angle(2)];
+/** R = abc / (4 A) with lengths scaled as the area is. */
+const circumradius = () => (scaled.length[0] * scaled.length[1] * scaled.length[2]) / (2 * scaled.twice);
+const inradius = () => scaled.twice / (scaled.length[0] + scaled.length[1] + scaled.length[2]);
+const spread = () => {
+  const of = valuesOf("area"), least = of.reduce((m, a) => (a < m ? a : m), Infinity);
+  return of.map((a) => a / least);
+};
+
+/** Every measure, by the names and formulas of the checker: better is "low", "high" or ""
+ *  (neither); log ones are binned by logarithm. */
 const measures = [
   { id: "radius_ratio", name: "R/(2r)", better: "low", range: [1, 1.6], make: shaped(ratio) },
-  { id: "min_angle", name: "smallest angle [°]", better: "high", range: [0, 60], make: shaped(() => Math.min(angle(0), angle(1), angle(2))) },
-  { id: "max_angle", name: "largest angle [°]", better: "low", range: [60, 180], make: shaped(() => Math.max(angle(0), angle(1), angle(2))) },
-  { id: "edge_ratio", name: "longest / shortest edge", better: "low", range: [1, 3], make: shaped(() => Math.max(length(0), length(1), length(2)) / Math.min(length(0), length(1), length(2))) },
+  { id: "min_angle", name: "smallest angle [°]", better: "high", range: [0, 60], make: shaped(() => Math.min(...angles())) },
+  { id: "max_angle", name: "largest angle [°]", better: "low", range: [60, 180], make: shaped(() => Math.max(...angles())) },
+  { id: "edge_ratio", name: "longest / shortest edge", better: "low", range: [1, 3], make: shaped(() => Math.max(...lengths()) / Math.min(...lengths())) },
+  { id: "neighbour_area_ratio", name: "area ratio to neighbours", better: "low", range: [1, 4], make: () => neighbourRatios(valuesOf("area")) },
+  { id: "edge_length_gradation", name: "edge length ratio to neighbours", better: "low", range: [1, 2], make: () => neighbourRatios(valuesOf("edge_length")) },
+  { id: "shape", name: "shape, 4√3 A / Σ l²", better: "high", range: [0, 1], make: shaped(() => (2 * Math.sqrt(3) * scaled.twice) / (dot(0, 0) + dot(1, 1) + dot(2, 2))) },
+  { id: "scaled_jacobian", name: "scaled Jacobian", better: "high", range: [0, 1], make: shaped(() => (2 / Math.sqrt(3)) * scaled.twice * Math.min(...scaled.length) / (scaled.length[0] * scaled.length[1] * scaled.length[2])) },
+  { id: "equiangle_skew", name: "equiangle skew", better: "low", range: [0, 1], make: shaped(() => Math.max((Math.max(...angles()) - 60) / 120, (60 - Math.min(...angles())) / 60)) },
+  { id: "radius_edge_ratio", name: "R / shortest edge", better: "low", range: [0.5, 1.5], make: shaped(() => circumradius() / Math.min(...scaled.length)) },
+  { id: "verdict_aspect_ratio", name: "longest edge / (2√3 r)", better: "low", range: [1, 2], make: shaped(() => Math.max(...scaled.length) / (2 * Math.sqrt(3) * inradius())) },
   { id: "area", name: "area", better: "", log: true, make: shaped(area) },
-  { id: "area_ratio", name: "area ratio to neighbours", better: "low", range: [1, 4], make: neighbourRatios },
-  { id: "edge_length", name: "mean edge length", better: "", log: true, make: shaped(() => (length(0) + length(1) + length(2)) / 3) },
+  { id: "area_spread", name: "area / smallest area", better: "", log: true, make: spread },
+  { id: "edge_length", name: "mean edge length", better: "", log: true, make: shaped(() => perimeter() / 3) },
   { id: "order", name: "order in the file", better: "", make: () => Float64Array.from({ length: count }, (_, t) => t) },
 ];
-meta.layers.forEach((layer, i) => measures.splice(i, 0, {
+// Layers that the file carries come after the measure that is shown first.
+meta.layers.forEach((layer, i) => measures.splice(1 + i, 0, {
   id: `layer-${i}`, name: layer.name, better: layer.better, range: layer.range,
   make: () => doubles(`layer-${i}`),
 }));
