@@ -21,6 +21,7 @@ pub mod mesher;
 pub mod predicates;
 pub mod refine;
 pub mod size;
+pub mod structured;
 pub mod subdivide;
 pub mod surface_mesher;
 pub mod triangulate;
