@@ -11,10 +11,10 @@ mod pass;
 mod smooth;
 
 pub use fold::faces;
-pub use pass::{Effort, Passes};
+pub use pass::{Effort, Passes, TooManyVertices};
 
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
-use crate::vector::{Vector, add, cross, distance, dot, norm, scale, sub, unit};
+use crate::vector::{Vector, add, cross, distance, scale, sub, unit};
 use fold::{is_kept, shape};
 
 /// The surface that a skin lies on.
@@ -73,6 +73,8 @@ pub struct Skin<'a, G: Ground> {
     /// A half-edge out of each vertex; stale for vertices that have vanished.
     out: Vec<HalfEdgeId>,
     gone: Vec<bool>,
+    /// Vertices around which something has changed since they were last polished in vain.
+    awake: Vec<bool>,
 }
 
 impl<'a, G: Ground> Skin<'a, G> {
@@ -85,7 +87,8 @@ impl<'a, G: Ground> Skin<'a, G> {
         let out = out.into_iter().map(|e| e.expect("every point is in a triangle")).collect();
         let spacing = points.iter().map(|&p| ground.spacing(p)).collect();
         let (places, gone) = (vec![None; points.len()], vec![false; points.len()]);
-        Self { ground, mesh, points, ranks, spacing, places, out, gone }
+        let awake = vec![true; points.len()];
+        Self { ground, mesh, points, ranks, spacing, places, out, gone, awake }
     }
 
     /// Where the search for the foot of a vertex may start.
@@ -155,6 +158,7 @@ impl<'a, G: Ground> Skin<'a, G> {
     fn anchor_triangle(&mut self, t: TriangleId) {
         for e in t.half_edges() {
             self.out[self.mesh.origin(e).index()] = e;
+            self.awake[self.mesh.origin(e).index()] = true;
         }
     }
 
@@ -166,6 +170,7 @@ impl<'a, G: Ground> Skin<'a, G> {
         self.places.push(place);
         self.out.push(HalfEdgeId(0));
         self.gone.push(false);
+        self.awake.push(true);
         VertexId(self.points.len() as u32 - 1)
     }
 
@@ -282,14 +287,6 @@ impl<'a, G: Ground> Skin<'a, G> {
             }
         }
         collected
-    }
-
-    /// Largest deviation of a normal from that of a neighbour: used by tests.
-    #[cfg(test)]
-    fn turn(&self, e: HalfEdgeId) -> f64 {
-        let Some(f) = self.mesh.twin(e) else { return 0.0 };
-        let [n, m] = [e, f].map(|h| self.normal(h.triangle()));
-        libm::acos((dot(n, m) / (norm(n) * norm(m))).clamp(-1.0, 1.0)).to_degrees()
     }
 }
 

@@ -10,7 +10,7 @@
 
 mod chart;
 mod flip;
-mod growth;
+pub(crate) mod growth;
 mod lift;
 mod outline;
 mod patch;

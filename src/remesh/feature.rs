@@ -37,8 +37,7 @@ pub(super) struct Cut {
 
 /// Marks the features of the input as constrained edges and finds their chains.
 pub(super) fn find(input: &mut Input, angle_deg: f64) -> Features {
-    let edges: Vec<HalfEdgeId> =
-        input.mesh.triangles().flat_map(TriangleId::half_edges).collect();
+    let edges: Vec<HalfEdgeId> = input.mesh.triangles().flat_map(TriangleId::half_edges).collect();
     let mut at: Vec<Vec<(u32, Kind)>> = vec![Vec::new(); input.points.len()];
     for e in edges {
         let twin = input.mesh.twin(e);
@@ -93,9 +92,7 @@ fn kind(input: &Input, e: HalfEdgeId, twin: Option<HalfEdgeId>, angle_deg: f64) 
     regions.sort_unstable();
     let is_feature = match twin {
         None => true,
-        Some(f) => {
-            marker.is_some() || regions[0] != regions[1] || input.turn_deg(e, f) > angle_deg
-        }
+        Some(f) => marker.is_some() || regions[0] != regions[1] || input.turn_deg(e, f) > angle_deg,
     };
     is_feature.then_some(Kind { marker, regions })
 }
@@ -238,7 +235,8 @@ mod tests {
     /// The unit cube, two triangles a face.
     pub(in super::super) fn cube() -> MeshData {
         let points = (0..8_u32).map(|k| [0, 1, 2].map(|i| f64::from(k >> i & 1))).collect();
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let quads =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         MeshData { points, triangles, ..MeshData::default() }
     }
@@ -296,9 +294,8 @@ mod tests {
         let (input, _) = features(&mesh, 40.0);
         let chain = Chain { vertices: vec![0, 1, 2], marker: None };
         let place = |cut: &Cut| if cut.edge == 0 { cut.at } else { 1.0 + 3.0 * cut.at };
-        let at = |h: f64| -> Vec<f64> {
-            cut(&input, &chain, 1, &|_| h).iter().map(place).collect()
-        };
+        let at =
+            |h: f64| -> Vec<f64> { cut(&input, &chain, 1, &|_| h).iter().map(place).collect() };
         for (h, expected) in [(9.0, vec![]), (2.0, vec![2.0]), (1.3, vec![4.0 / 3.0, 8.0 / 3.0])] {
             let found = at(h);
             assert_eq!(found.len(), expected.len());

@@ -7,6 +7,8 @@ use crate::triangulation::{HalfEdgeId, VertexId};
 const LONG: f64 = 4.0 / 3.0;
 /// Edges shorter than this are collapsed: then their neighbours are nearer to it.
 const SHORT: f64 = 4.0 / 5.0;
+/// Flips and moves after each pass of splits and collapses.
+const MOVES: u32 = 3;
 /// Most passes of splits or collapses in a row; each halves or doubles lengths.
 const REPEATS: u32 = 40;
 
@@ -48,14 +50,19 @@ impl<G: Ground> Skin<'_, G> {
     ///
     /// # Errors
     /// When more than `vertices_max` vertices would have been made.
-    pub fn remesh(&mut self, effort: Effort, vertices_max: usize) -> Result<Passes, TooManyVertices> {
+    pub fn remesh(
+        &mut self,
+        effort: Effort,
+        vertices_max: usize,
+    ) -> Result<Passes, TooManyVertices> {
         let mut passes = Passes::default();
         for _ in 0..effort.rounds {
             self.split_long(&mut passes, vertices_max)?;
             self.collapse_short(&mut passes);
-            passes.flips += self.flip_where(Self::is_valence_better);
-            passes.moves += self.even_out();
-            passes.moves += self.even_out();
+            for _ in 0..MOVES {
+                passes.flips += self.flip_where(Self::is_valence_better);
+                passes.moves += self.even_out();
+            }
         }
         self.improve(effort.polish, &mut passes);
         Ok(passes)
@@ -74,7 +81,11 @@ impl<G: Ground> Skin<'_, G> {
         }
     }
 
-    fn split_long(&mut self, passes: &mut Passes, vertices_max: usize) -> Result<(), TooManyVertices> {
+    fn split_long(
+        &mut self,
+        passes: &mut Passes,
+        vertices_max: usize,
+    ) -> Result<(), TooManyVertices> {
         for _ in 0..REPEATS {
             let mut long: Vec<(f64, HalfEdgeId)> =
                 self.edges().into_iter().map(|e| (self.ratio(e), e)).collect();
@@ -83,20 +94,30 @@ impl<G: Ground> Skin<'_, G> {
             long.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.0.cmp(&b.1.0)));
             let mut count = 0;
             for (ratio, e) in long {
-                let is_current = self.mesh.is_live(e.triangle()) && self.ratio(e) == ratio;
-                if is_current && !self.mesh.is_constrained(e) && self.split_middle(e) {
+                let is_current = self.ratio(e) == ratio && !self.mesh.is_constrained(e);
+                if is_current && self.is_longest(e) && self.split_middle(e) {
                     count += 1;
                 }
-                if self.points.len() > vertices_max {
+                if self.mesh.live_count() > 2 * vertices_max {
                     return Err(TooManyVertices(vertices_max));
                 }
             }
             passes.splits += count;
+            passes.flips += self.flip_where(Self::is_shape_better);
             if count == 0 {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Whether an edge is the longest free one of its triangles: fans are cut across, not along.
+    fn is_longest(&self, e: HalfEdgeId) -> bool {
+        let ratio = self.ratio(e);
+        let beside = [Some(e), self.mesh.twin(e)].into_iter().flatten();
+        beside.flat_map(|h| [h.next(), h.prev()]).all(|h| {
+            self.mesh.is_constrained(h) || self.ratio(h) <= ratio
+        })
     }
 
     fn collapse_short(&mut self, passes: &mut Passes) {

@@ -31,13 +31,14 @@ impl<G: Ground> Skin<'_, G> {
     pub(super) fn polish(&mut self) -> u64 {
         let mut moves = 0;
         for v in (0..self.points.len() as u32).map(VertexId) {
-            if self.is_movable(v) {
+            if self.is_movable(v) && self.awake[v.index()] {
                 let is_better = |before: Worth, after: Worth| after.sum < before.sum;
                 let ideal = self.ideal_place(v);
                 let moved = self.move_towards(v, ideal, is_better) || {
                     let mean = self.mean_place(v);
                     self.move_towards(v, mean, is_better)
                 };
+                self.awake[v.index()] = moved;
                 moves += u64::from(moved);
             }
         }
@@ -106,6 +107,10 @@ impl<G: Ground> Skin<'_, G> {
                 self.points[v.index()] = point;
                 self.places[v.index()] = Some(place);
                 self.spacing[v.index()] = self.ground.spacing(point);
+                for e in star {
+                    self.awake[self.mesh.dest(e).index()] = true;
+                    self.awake[self.mesh.apex(e).index()] = true;
+                }
                 return true;
             }
         }
