@@ -310,6 +310,20 @@ fn cut_chains(
     owners
 }
 
+/// Vertices that triangles use, minus edges, plus triangles.
+#[must_use]
+pub fn euler_number(triangles: &[[u32; 3]]) -> i64 {
+    let mut vertices: Vec<u32> = triangles.iter().flatten().copied().collect();
+    let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let mut edges: Vec<[u32; 2]> =
+        triangles.iter().flat_map(sides).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    edges.sort_unstable();
+    edges.dedup();
+    vertices.len() as i64 - edges.len() as i64 + triangles.len() as i64
+}
+
 /// Plain arrays with the regions and markers of the input.
 fn assemble(
     input: &Input,

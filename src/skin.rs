@@ -7,10 +7,12 @@
 
 mod collapse;
 mod fold;
+mod link;
 mod pass;
 mod smooth;
 
 pub use fold::faces;
+pub use link::{BadEdge, linked};
 pub use pass::{Effort, Passes, TooManyVertices};
 
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};

@@ -9,6 +9,7 @@
 //! space (SPEC 12).
 
 mod chart;
+mod direct;
 mod flip;
 pub(crate) mod growth;
 mod lift;
@@ -42,6 +43,8 @@ pub enum SurfaceMethod {
     /// By the front in (u, v).
     #[default]
     Front,
+    /// By a front in space whose points are brought back to the surface.
+    Direct,
     /// By structured grids in (u, v).
     Grid(GridMethod),
 }
@@ -117,6 +120,19 @@ pub enum SurfaceMeshError {
         /// Where.
         at: Vector,
     },
+    /// A front in space did not close.
+    #[error(
+        "the front in space on patch {name} did not close: {edges} edges are left near {at:?}; take \
+         a smaller --spacing, or the method of (u, v)"
+    )]
+    Stuck {
+        /// The patch.
+        name: String,
+        /// Where.
+        at: Vector,
+        /// Front edges left.
+        edges: usize,
+    },
     /// A patch has no structured grid.
     #[error(transparent)]
     Grid(#[from] PatchGridError),
@@ -187,6 +203,9 @@ pub fn mesh_model(
     let nodes = plan.nodes(model)?;
     if let SurfaceMethod::Grid(method) = options.method {
         return plan.grids(model, &nodes, (method, options.common.triangles_max), observer);
+    }
+    if options.method == SurfaceMethod::Direct {
+        return plan.direct(model, &nodes, &options.common, observer);
     }
     let drafts = plan.drafts(model, &nodes)?;
 

@@ -123,8 +123,7 @@ fn where_the_transfinite_grid_folds_the_elliptic_one_does_not() {
 #[test]
 fn a_fold_that_no_smoothing_mends_is_told_with_its_place() {
     // A spike of one node that leans over its neighbour: no node of so coarse a grid gets below it.
-    let is_tip = |s: f64| (s - 0.5).abs() < 1e-9;
-    let spike = |s: f64| if is_tip(s) { [0.9, 0.5] } else { [s, 0.0] };
+    let spike = |s: f64| if (s - 0.5).abs() < 1e-9 { [0.9, 0.5] } else { [s, 0.0] };
     let sides: [&Side; 4] = [&spike, &|t| [1.0, t], &|s| [s, 1.0], &|t| [0.0, t]];
     let domain = four_sided(sides, 4, 2);
     let error = grid_error(&domain, Method::Elliptic, corners(4, 2));

@@ -1,6 +1,10 @@
 //! What can be said on the command line: one definition per flag feeds `-h`, `--help`, the manual
 //! page, the completions and the tests.
 
+mod remesh;
+
+pub use remesh::RemeshArguments;
+
 use crate::check::report::Form;
 use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::delaunay::Engine;
@@ -64,6 +68,8 @@ pub enum Verb {
     Mesh(Box<MeshArguments>),
     /// Check a mesh exactly, anybody's mesh, with or without its domain.
     Check(Box<CheckArguments>),
+    /// Remesh a triangulated surface: edges of a wanted length, features kept.
+    Remesh(RemeshArguments),
     /// Triangulate points, or points and segments, by Delaunay's criterion.
     Delaunay(Box<DelaunayArguments>),
     /// Tessellate the plane by the nearest of some points.

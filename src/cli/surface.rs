@@ -105,6 +105,7 @@ fn method(arguments: &MeshArguments) -> Result<SurfaceMethod, Failure> {
     Ok(match arguments.options.method {
         Method::Transfinite => SurfaceMethod::Grid(GridMethod::Transfinite),
         Method::Elliptic => SurfaceMethod::Grid(GridMethod::Elliptic),
+        Method::DirectSurface => SurfaceMethod::Direct,
         _ => SurfaceMethod::Front,
     })
 }
@@ -151,6 +152,7 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
         | SurfaceMeshError::Outline { .. }
         | SurfaceMeshError::Flat { .. } => Failure::findings(vec![diagnostic]),
         SurfaceMeshError::Coarse { .. }
+        | SurfaceMeshError::Stuck { .. }
         | SurfaceMeshError::TooMany { .. }
         | SurfaceMeshError::Front(_)
         | SurfaceMeshError::Options(_) => Failure::cannot_run(diagnostic),

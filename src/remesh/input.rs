@@ -2,7 +2,8 @@
 
 use super::RemeshError;
 use crate::mesh::{MeshData, NO_POINT};
-use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
+use crate::skin::{BadEdge, linked};
+use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation};
 use crate::vector::{Vector, cross, dot, key, norm, sub, unit};
 use std::collections::BTreeMap;
 
@@ -48,7 +49,7 @@ impl Input {
                 markers.insert([a.min(b), a.max(b)], edge.marker);
             }
         }
-        let topology = linked(&triangles, &points)?;
+        let topology = linked(&triangles).map_err(|bad| bad_edge(bad, &points))?;
         assert_no_pinch(&topology, &points)?;
         let normal = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| points[v as usize]);
@@ -103,28 +104,13 @@ fn merged(mesh: &MeshData) -> Result<(Vec<u32>, Vec<Vector>), RemeshError> {
     Ok((number, points))
 }
 
-/// Links the triangles; every edge has at most two, which run along it in opposite directions.
-fn linked(triangles: &[[u32; 3]], points: &[Vector]) -> Result<Triangulation, RemeshError> {
-    let mut mesh = Triangulation::with_capacity(triangles.len());
-    let mut edges: Vec<([u32; 2], HalfEdgeId)> = Vec::with_capacity(3 * triangles.len());
-    for corners in triangles {
-        let t = mesh.add(corners.map(VertexId));
-        for e in t.half_edges() {
-            let [a, b] = [mesh.origin(e).0, mesh.dest(e).0];
-            edges.push(([a.min(b), a.max(b)], e));
-        }
+/// Why an edge is none of a surface.
+fn bad_edge(bad: BadEdge, points: &[Vector]) -> RemeshError {
+    let [from, to] = bad.vertices.map(|v| points[v as usize]);
+    match bad.count {
+        2 => RemeshError::Orientation { from, to },
+        count => RemeshError::Crowded { count, from, to },
     }
-    edges.sort_unstable_by_key(|&(ends, e)| (ends, e.0));
-    for group in edges.chunk_by(|a, b| a.0 == b.0) {
-        let [from, to] = group[0].0.map(|v| points[v as usize]);
-        match group {
-            [_] => {}
-            &[(_, e), (_, f)] if mesh.origin(e) != mesh.origin(f) => mesh.link(e, f),
-            [_, _] => return Err(RemeshError::Orientation { from, to }),
-            _ => return Err(RemeshError::Crowded { count: group.len(), from, to }),
-        }
-    }
-    Ok(mesh)
 }
 
 /// Every vertex has one fan of triangles.

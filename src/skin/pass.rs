@@ -115,9 +115,9 @@ impl<G: Ground> Skin<'_, G> {
     fn is_longest(&self, e: HalfEdgeId) -> bool {
         let ratio = self.ratio(e);
         let beside = [Some(e), self.mesh.twin(e)].into_iter().flatten();
-        beside.flat_map(|h| [h.next(), h.prev()]).all(|h| {
-            self.mesh.is_constrained(h) || self.ratio(h) <= ratio
-        })
+        beside
+            .flat_map(|h| [h.next(), h.prev()])
+            .all(|h| self.mesh.is_constrained(h) || self.ratio(h) <= ratio)
     }
 
     fn collapse_short(&mut self, passes: &mut Passes) {
