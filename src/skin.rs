@@ -10,6 +10,8 @@ mod fold;
 mod link;
 mod pass;
 mod smooth;
+#[cfg(test)]
+mod tests;
 
 pub use fold::faces;
 pub use link::{BadEdge, linked};

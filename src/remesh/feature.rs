@@ -292,7 +292,8 @@ mod tests {
             ..MeshData::default()
         };
         let (input, _) = features(&mesh, 40.0);
-        let chain = Chain { vertices: vec![0, 1, 2], marker: None };
+        // Vertices are numbered as the triangles first name them.
+        let chain = Chain { vertices: vec![0, 1, 4], marker: None };
         let place = |cut: &Cut| if cut.edge == 0 { cut.at } else { 1.0 + 3.0 * cut.at };
         let at =
             |h: f64| -> Vec<f64> { cut(&input, &chain, 1, &|_| h).iter().map(place).collect() };

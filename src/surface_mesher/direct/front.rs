@@ -5,7 +5,9 @@ use super::near::Near;
 use super::tangent::{Beside, Tangent, Trial};
 use crate::skin::Foot;
 use crate::surface::Surface;
-use crate::vector::{Vector, add, along, cross, distance, dot, norm, scale, sub, unit};
+use crate::vector::{
+    Vector, add, along, cross, distance, dot, norm, scale, segment_distance_sq, sub, unit,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the front needs to know of its patch.
@@ -259,13 +261,11 @@ impl<'a> SpaceFront<'a> {
         if sides.iter().any(|side| self.used.contains(side)) {
             return false;
         }
-        // A side that is no front edge yet becomes one: it must not be one the other way round.
-        let becomes = |from: u32, to: u32| {
-            self.index.contains_key(&[from, to]) || !self.used.contains(&[to, from])
-        };
+        // A side that is no front edge is the first of its two: its reverse is free as well.
         let is_free = |from: u32, to: u32| {
-            becomes(from, to)
-                && (self.index.contains_key(&[from, to]) || !self.index.contains_key(&[to, from]))
+            let reverse = [to, from];
+            self.index.contains_key(&[from, to])
+                || !(self.index.contains_key(&reverse) || self.used.contains(&reverse))
         };
         let flat = [a, b, v].map(|w| plane.flat(self.points[w as usize]));
         is_free(b, v) && is_free(v, a) && Trial { vertices: [a, b, v], flat }.is_clear(beside)
@@ -275,21 +275,14 @@ impl<'a> SpaceFront<'a> {
     fn try_new(&mut self, base: &Edge, plane: &Tangent, apex: &Apex) -> bool {
         let [a, b] = base.vertices;
         let Apex { foot, spacing } = apex;
-        let beside = self.beside(
-            base,
-            plane,
-            2.5 * spacing.max(distance(self.points[a as usize], self.points[b as usize])),
-        );
+        let [from, to] = self.ends(base);
+        let beside = self.beside(base, plane, 2.5 * spacing.max(distance(from, to)));
         let is_far = beside.iter().all(|edge| {
             let [p, q] = edge.vertices.map(|v| self.points[v as usize]);
             let limit = CLEARANCE * spacing;
-            crate::vector::segment_distance_sq(p, q, foot.point) >= limit * limit
+            segment_distance_sq(p, q, foot.point) >= limit * limit
         });
-        let flat = [
-            plane.flat(self.points[a as usize]),
-            plane.flat(self.points[b as usize]),
-            plane.flat(foot.point),
-        ];
+        let flat = [from, to, foot.point].map(|p| plane.flat(p));
         let trial = Trial { vertices: [a, b, u32::MAX], flat };
         if !is_far || dot(foot.normal, base.normal) <= 0.0 || !trial.is_clear(&beside) {
             return false;
