@@ -57,9 +57,9 @@ pub(super) struct SpaceFront<'a> {
 }
 
 /// New vertices and existing ones nearer to each other than this fraction of the spacing are one.
-const MERGE: f64 = 0.65;
+const MERGE: f64 = 0.55;
 /// A new vertex is at least this far from front edges.
-const CLEARANCE: f64 = 0.5;
+const CLEARANCE: f64 = 0.45;
 /// Side of a triangle over its base edge, at least and at most.
 const CLAMP: f64 = 1.5;
 /// How often an edge is put back before the front is stuck; each time it looks further.
