@@ -162,7 +162,8 @@ pub enum RemeshError {
 /// [`RemeshError`]: what is no manifold surface, options out of range, too many triangles.
 ///
 /// # Complexity
-/// O((n + m) log n) for n triangles in and m out, times the rounds of the effort.
+/// O((n + m) log n) for n triangles in and m out, times the rounds of the effort; at a vertex of the
+/// input with k neighbours O(k^2) more.
 pub fn remesh(mesh: &MeshData, options: &RemeshOptions) -> Result<Remeshed, RemeshError> {
     options.check()?;
     let mut input = Input::new(mesh)?;
@@ -182,7 +183,9 @@ pub fn remesh(mesh: &MeshData, options: &RemeshOptions) -> Result<Remeshed, Reme
     for (v, t) in first_triangles(&input).into_iter().enumerate() {
         skin.set_place(VertexId(v as u32), t);
     }
-    let cuts = feature::cuts(&input, &chains, &|p| ground.spacing(p));
+    let limit = options.triangles_max;
+    let cuts = feature::cuts(&input, &chains, &|p| ground.spacing(p), limit);
+    let cuts = cuts.map_err(|predicted| RemeshError::TooMany { predicted, limit })?;
     let owners = cut_chains(&mut skin, &chains, &cuts);
     // A triangle mesh has half as many vertices as triangles; the backstop is four times that.
     let vertices_max = skin.points.len() + (2.0 * predicted) as usize + 1000;

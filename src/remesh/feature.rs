@@ -4,8 +4,8 @@
 use super::input::Input;
 use crate::skin::Rank;
 use crate::triangulation::{HalfEdgeId, TriangleId, VertexId};
-use crate::vector::{along, distance, dot, sub, unit};
-use std::collections::BTreeMap;
+use crate::vector::{Vector, along, distance, dot, sub, unit};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A chain of feature edges between two corners, or closed.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub(super) fn find(input: &mut Input, angle_deg: f64) -> Features {
     }
     let corners: Vec<bool> =
         (0..at.len()).map(|v| is_corner(input, v as u32, &at[v], angle_deg)).collect();
-    let mut walk = Walk { at: &at, corners: &corners, seen: vec![Vec::new(); at.len()] };
+    let mut walk = Walk { at: &at, corners: &corners, seen: BTreeSet::new() };
     let mut chains: Vec<Chain> = Vec::new();
     for v in (0..at.len()).filter(|&v| corners[v]) {
         chains.extend((0..at[v].len()).filter_map(|k| walk.from(v as u32, k)));
@@ -117,22 +117,22 @@ fn is_corner(input: &Input, v: u32, list: &[(u32, Kind)], angle_deg: f64) -> boo
 struct Walk<'a> {
     at: &'a [Vec<(u32, Kind)>],
     corners: &'a [bool],
-    /// Neighbours to which each vertex has been left.
-    seen: Vec<Vec<u32>>,
+    /// Edges of known chains, by their lower and upper vertex.
+    seen: BTreeSet<[u32; 2]>,
 }
 
 impl Walk<'_> {
     /// The chain that starts with the `k`-th feature edge at `start`, unless it is known.
     fn from(&mut self, start: u32, k: usize) -> Option<Chain> {
         let (mut next, kind) = self.at[start as usize][k];
-        if self.seen[start as usize].contains(&next) {
+        let ends = |a: u32, b: u32| [a.min(b), a.max(b)];
+        if self.seen.contains(&ends(start, next)) {
             return None;
         }
         let mut vertices = vec![start];
         let mut here = start;
         loop {
-            self.seen[here as usize].push(next);
-            self.seen[next as usize].push(here);
+            self.seen.insert(ends(here, next));
             vertices.push(next);
             if self.corners[next as usize] || next == start {
                 return Some(Chain { vertices, marker: kind.marker });
@@ -146,11 +146,19 @@ impl Walk<'_> {
 
 /// How chains are cut: each gets round(integral of ds / h) edges of equal parts of that integral, at
 /// least one, two beside another chain between the same corners, three when closed.
+///
+/// # Errors
+/// The number of edges, when it is above `limit`.
 pub(super) fn cuts(
     input: &Input,
     chains: &[Chain],
-    spacing: &dyn Fn(crate::vector::Vector) -> f64,
-) -> Vec<Vec<Cut>> {
+    spacing: &dyn Fn(Vector) -> f64,
+    limit: usize,
+) -> Result<Vec<Vec<Cut>>, f64> {
+    let edges: f64 = chains.iter().map(|chain| Sampled::new(input, chain, spacing).total).sum();
+    if edges > limit as f64 {
+        return Err(edges);
+    }
     let mut between: BTreeMap<[u32; 2], usize> = BTreeMap::new();
     let ends = |chain: &Chain| {
         let (a, b) = (chain.vertices[0], chain.vertices[chain.vertices.len() - 1]);
@@ -166,45 +174,55 @@ pub(super) fn cuts(
             1 => 1,
             _ => 2,
         };
-        cut(input, chain, least, spacing)
+        Sampled::new(input, chain, spacing).cut(least)
     };
-    chains.iter().map(cut).collect()
+    Ok(chains.iter().map(cut).collect())
 }
 
 /// Samples of the spacing on each edge of a chain.
 const SAMPLES: usize = 8;
 
-fn cut(
-    input: &Input,
-    chain: &Chain,
-    least: usize,
-    spacing: &dyn Fn(crate::vector::Vector) -> f64,
-) -> Vec<Cut> {
-    let mut pieces = Vec::new();
-    let mut total = 0.0;
-    for (edge, pair) in chain.vertices.windows(2).enumerate() {
-        let [a, b] = [pair[0], pair[1]].map(|v| input.points[v as usize]);
-        let length = distance(a, b) / SAMPLES as f64;
-        for k in 0..SAMPLES {
-            let at = (k as f64 + 0.5) / SAMPLES as f64;
-            pieces.push((edge, k, total));
-            total += length / spacing(along(a, at, sub(b, a)));
+/// Lengths over spacings along a chain.
+struct Sampled {
+    /// Edge of the chain, sample on it, and the integral of ds / h up to the sample's piece.
+    pieces: Vec<(usize, usize, f64)>,
+    /// The whole integral.
+    total: f64,
+}
+
+impl Sampled {
+    fn new(input: &Input, chain: &Chain, spacing: &dyn Fn(Vector) -> f64) -> Self {
+        let mut sampled = Self { pieces: Vec::new(), total: 0.0 };
+        for (edge, pair) in chain.vertices.windows(2).enumerate() {
+            let [a, b] = [pair[0], pair[1]].map(|v| input.points[v as usize]);
+            let length = distance(a, b) / SAMPLES as f64;
+            for k in 0..SAMPLES {
+                let at = (k as f64 + 0.5) / SAMPLES as f64;
+                sampled.pieces.push((edge, k, sampled.total));
+                sampled.total += length / spacing(along(a, at, sub(b, a)));
+            }
         }
+        sampled
     }
-    let count = (libm::round(total) as usize).max(least);
-    let mut cuts = Vec::with_capacity(count);
-    let mut i = 0;
-    for n in 1..count {
-        let wanted = total * n as f64 / count as f64;
-        while i + 1 < pieces.len() && pieces[i + 1].2 <= wanted {
-            i += 1;
+
+    /// At equal parts of the integral, at least `least` of them.
+    fn cut(&self, least: usize) -> Vec<Cut> {
+        let Self { pieces, total } = self;
+        let count = (libm::round(*total) as usize).max(least);
+        let mut cuts = Vec::with_capacity(count);
+        let mut i = 0;
+        for n in 1..count {
+            let wanted = total * n as f64 / count as f64;
+            while i + 1 < pieces.len() && pieces[i + 1].2 <= wanted {
+                i += 1;
+            }
+            let (edge, k, from) = pieces[i];
+            let to = pieces.get(i + 1).map_or(*total, |next| next.2);
+            let part = if to > from { (wanted - from) / (to - from) } else { 0.5 };
+            cuts.push(Cut { edge, at: (k as f64 + part) / SAMPLES as f64 });
         }
-        let (edge, k, from) = pieces[i];
-        let to = pieces.get(i + 1).map_or(total, |next| next.2);
-        let part = if to > from { (wanted - from) / (to - from) } else { 0.5 };
-        cuts.push(Cut { edge, at: (k as f64 + part) / SAMPLES as f64 });
+        cuts
     }
-    cuts
 }
 
 /// A cut this near to a vertex of the chain, as a fraction of the edge, is taken there.
@@ -233,7 +251,7 @@ mod tests {
     use crate::mesh::{MarkedEdge, MeshData};
 
     /// The unit cube, two triangles a face.
-    pub(in super::super) fn cube() -> MeshData {
+    fn cube() -> MeshData {
         let points = (0..8_u32).map(|k| [0, 1, 2].map(|i| f64::from(k >> i & 1))).collect();
         let quads =
             [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -295,8 +313,9 @@ mod tests {
         // Vertices are numbered as the triangles first name them.
         let chain = Chain { vertices: vec![0, 1, 4], marker: None };
         let place = |cut: &Cut| if cut.edge == 0 { cut.at } else { 1.0 + 3.0 * cut.at };
-        let at =
-            |h: f64| -> Vec<f64> { cut(&input, &chain, 1, &|_| h).iter().map(place).collect() };
+        let at = |h: f64| -> Vec<f64> {
+            Sampled::new(&input, &chain, &|_| h).cut(1).iter().map(place).collect()
+        };
         for (h, expected) in [(9.0, vec![]), (2.0, vec![2.0]), (1.3, vec![4.0 / 3.0, 8.0 / 3.0])] {
             let found = at(h);
             assert_eq!(found.len(), expected.len());
@@ -304,6 +323,12 @@ mod tests {
                 assert!((a - b).abs() < 1e-12, "{a} for {b}");
             }
         }
-        assert_eq!(cut(&input, &chain, 3, &|_| 100.0).len(), 2, "at least three edges");
+        assert_eq!(
+            Sampled::new(&input, &chain, &|_| 100.0).cut(3).len(),
+            2,
+            "at least three edges"
+        );
+        let many = cuts(&input, &[chain], &|_| 1e-12, 1000).expect_err("too many");
+        assert!((many / 4e12 - 1.0).abs() < 1e-9, "{many}");
     }
 }

@@ -30,14 +30,24 @@ fn octahedron() -> (Vec<Vector>, Vec<[u32; 3]>) {
         let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
         std::array::from_fn(|i| if i == k / 2 { sign } else { 0.0 })
     });
-    let triangles =
-        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let triangles = vec![
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
     (points.collect(), triangles)
 }
 
 /// A square of `n` times `n` cells.
 fn square(n: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
-    let at = |k: u32| [f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n), 0.0];
+    let at = |k: u32| {
+        [f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n), 0.0]
+    };
     let points = (0..(n + 1) * (n + 1)).map(at).collect();
     let cell = |k: u32| {
         let a = k / n * (n + 1) + k % n;
