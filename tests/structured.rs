@@ -242,13 +242,13 @@ fn surface_grid(model: &Model, method: GridMethod) -> Result<SurfaceMeshed, Surf
     mesh_model(model, &options, &mut Unobserved)
 }
 
-/// The model with `count` edges on every side.
+/// The model with `count` edges on every side of its smooth patches.
 fn counted(mut model: Model, count: usize) -> Model {
-    for patch in &model.patches {
+    for surface in model.patches.iter().flat_map(|patch| patch.surface.pieces()) {
         for side in Side4::ALL {
             model.curves.push(ModelCurve {
                 name: side.name().to_owned(),
-                curve: patch.surface.side(side),
+                curve: surface.side(side),
                 rule: Some(Rule::Count(count)),
                 marker: None,
             });
