@@ -60,9 +60,9 @@ pub(super) fn find(input: &mut Input, angle_deg: f64) -> Features {
     }
     // What is left are closed curves without a corner.
     let mut ranks: Vec<Rank> = at.iter().map(|list| rank(list.len())).collect();
-    for v in 0..at.len() {
-        for k in 0..at[v].len() {
-            chains.extend(walk.from(v as u32, k));
+    for (v, list) in (0..).zip(&at) {
+        for k in 0..list.len() {
+            chains.extend(walk.from(v, k));
         }
     }
     for chain in &chains {

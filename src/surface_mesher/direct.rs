@@ -21,6 +21,9 @@ use crate::vector::{Vector, dot};
 use front::{Laid, Over, SpaceFront, Stuck};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Parameters of the new vertices of a patch.
+type Places = BTreeMap<u32, [f64; 2]>;
+
 /// Samples in each direction of a patch for the prediction.
 const SAMPLES: u32 = 40;
 /// The backstop over the prediction.
@@ -55,7 +58,7 @@ impl Plan {
             let (laid, places) = self.lay(i, nodes, (&mut weld, budget), observer, name)?;
             meshed.front.inserted += places.len() as u64;
             meshed.front.accepted_existing += laid.len().saturating_sub(places.len()) as u64;
-            let rounds = options.improve.sweeps as u32;
+            let rounds = options.improve.sweeps;
             let (laid, passes) = self.improve(i, laid, &places, (&mut weld, rounds), name)?;
             meshed.improved[0] += passes.flips;
             meshed.improved[1] += passes.moves;
@@ -91,12 +94,12 @@ impl Plan {
         (weld, budget): (&mut Weld, usize),
         observer: &mut dyn Observer,
         name: &str,
-    ) -> Result<(Vec<Laid>, BTreeMap<u32, [f64; 2]>), SurfaceMeshError> {
+    ) -> Result<(Vec<Laid>, Places), SurfaceMeshError> {
         let chart = self.chart(piece);
         let spacing = |p: Vector, [u, v]: [f64; 2]| chart.spacing_at(chart.sheet.scaled(u, v), p);
         let over = Over { surface: &self.outline.pieces[piece].surface, spacing: &spacing };
         let nodes: Vec<(u32, [f64; 2])> = nodes.iter().map(|n| (n.vertex, [n.u, n.v])).collect();
-        let mut places = BTreeMap::new();
+        let mut places = Places::new();
         let done = weld.mesh.triangles.len();
         let mut is_stopped = false;
         let mut progress = |n: usize| {
@@ -119,7 +122,7 @@ impl Plan {
         &self,
         piece: usize,
         laid: Vec<Laid>,
-        places: &BTreeMap<u32, [f64; 2]>,
+        places: &Places,
         (weld, rounds): (&mut Weld, u32),
         name: &str,
     ) -> Result<(Vec<Laid>, Passes), SurfaceMeshError> {
