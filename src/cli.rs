@@ -18,6 +18,7 @@ pub mod outcome;
 pub mod output;
 pub mod point_file;
 pub mod refinement;
+pub mod remesh;
 pub mod size_file;
 pub mod size_layers;
 pub mod study;
@@ -78,6 +79,7 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
     match verb {
         Verb::Mesh(mesh) => return mesh::run(mesh, console, cleanup),
         Verb::Check(check) => return check::run(check, console, cleanup),
+        Verb::Remesh(remesh) => return remesh::run(remesh, console, cleanup),
         Verb::Delaunay(delaunay) => return delaunay::run(delaunay, console, cleanup),
         Verb::Voronoi(arguments) => return voronoi::run(arguments, console, cleanup),
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
@@ -96,7 +98,7 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
 /// Whether a verb ends in a verdict on a mesh, which reports of every form can tell.
 fn has_verdict(verb: &Verb) -> bool {
     match verb {
-        Verb::Mesh(_) | Verb::Check(_) => true,
+        Verb::Mesh(_) | Verb::Check(_) | Verb::Remesh(_) => true,
         Verb::Delaunay(delaunay) => delaunay.check,
         _ => false,
     }
@@ -107,6 +109,7 @@ fn subject(verb: &Verb) -> String {
     match verb {
         Verb::Mesh(mesh) => mesh.domain.display().to_string(),
         Verb::Check(check) => check.mesh.display().to_string(),
+        Verb::Remesh(remesh) => remesh.mesh.display().to_string(),
         Verb::Delaunay(delaunay) => delaunay.input.points.display().to_string(),
         _ => String::new(),
     }
@@ -116,6 +119,7 @@ fn subject(verb: &Verb) -> String {
 fn outputs(verb: &Verb) -> &[PathBuf] {
     match verb {
         Verb::Mesh(mesh) => &mesh.outputs,
+        Verb::Remesh(remesh) => &remesh.outputs,
         Verb::Delaunay(delaunay) => &delaunay.outputs,
         Verb::Voronoi(voronoi) => &voronoi.outputs,
         Verb::Convert(convert) => &convert.outputs,

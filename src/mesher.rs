@@ -7,10 +7,12 @@ mod fit;
 mod options;
 mod refined;
 mod scale;
+mod structured;
 
 pub use builder::Mesher;
 pub use fit::Fit;
 pub use options::{AreaMax, Count, Gradation, Method, Options, OptionsError};
+pub use structured::GridError;
 
 use crate::background::{Background, BackgroundError};
 use crate::domain::Domain;
@@ -21,6 +23,7 @@ use crate::mesh::{MarkedEdge, Mesh};
 use crate::point::Point2;
 use crate::refine::{RefineError, RefineStats};
 use crate::size::{ExpressionError, Prediction, SpacingTable, TableError};
+use crate::structured::{GridMethod, GridStats};
 use crate::subdivide::{self, TooManyPoints, subdivide};
 use crate::triangulation::{Across, HalfEdgeId, Triangulation};
 use control::Control;
@@ -41,6 +44,8 @@ pub enum Stage {
     Front,
     /// Delaunay refinement, in place of the front.
     Refine,
+    /// A structured grid, in place of the front.
+    Grid,
     /// Flips and smoothing.
     Improve,
     /// Plain arrays.
@@ -55,6 +60,7 @@ impl std::fmt::Display for Stage {
             Self::Size => "size field",
             Self::Front => "front",
             Self::Refine => "refine",
+            Self::Grid => "grid",
             Self::Improve => "improve",
             Self::Collect => "collect",
         })
@@ -100,6 +106,8 @@ pub struct Meshed {
     pub splits: usize,
     /// How well its edges fit the wanted spacing; `None` when all of them are the domain's.
     pub fit: Option<Fit>,
+    /// How the structured grid came out (methods transfinite and elliptic).
+    pub grid: Option<GridStats>,
 }
 
 /// Why there is no mesh.
@@ -135,6 +143,9 @@ pub enum MeshError {
     /// The boundary would be split too often.
     #[error(transparent)]
     Split(#[from] TooManyPoints),
+    /// The domain has no structured grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
     /// Options that make no sense.
     #[error(transparent)]
     Options(#[from] OptionsError),
@@ -203,6 +214,9 @@ pub fn mesh_plc(
     if options.method == Method::Delaunay {
         return refined::mesh(&background, options, &scale, observer);
     }
+    if let Some(method) = grid_method(options.method) {
+        return structured::mesh(&background, &plc, method, options, (&scale, observer));
+    }
     let splits = split_boundary(&plc, &mut background, options, &scale)?;
 
     observer.stage(Stage::Size);
@@ -220,6 +234,15 @@ pub fn mesh_plc(
         Count::Field | Count::Coarsen => meshed,
     };
     Ok(Meshed { splits, ..meshed })
+}
+
+/// The structured grid that a method asks for.
+fn grid_method(method: Method) -> Option<GridMethod> {
+    match method {
+        Method::Transfinite => Some(GridMethod::Transfinite),
+        Method::Elliptic => Some(GridMethod::Elliptic),
+        _ => None,
+    }
 }
 
 /// Splits the boundary where that is asked for; returns the number of new points.
@@ -380,8 +403,8 @@ fn collect(laid: FrontMesh, background: &Background, made: Made, scale: &Scale) 
     let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
     let mesh = Mesh { points, triangles, edges, regions };
     let Made { prediction, improve, fit } = made;
-    let (refine, splits) = (None, 0);
-    Meshed { mesh, spacing, prediction, front: stats, improve, refine, splits, fit }
+    let (refine, splits, grid) = (None, 0, None);
+    Meshed { mesh, spacing, prediction, front: stats, improve, refine, splits, fit, grid }
 }
 
 fn region_markers(topology: &Triangulation, background: &Background) -> Vec<i32> {

@@ -11,13 +11,15 @@
 #![doc = include_str!("../docs/pictures/surface.svg")]
 
 mod chart;
+mod direct;
 mod flip;
-mod growth;
+pub(crate) mod growth;
 mod lift;
 mod outline;
 mod patch;
 mod sizing;
 mod smooth;
+mod structured;
 
 use crate::curve::discretize::DiscretizeError;
 use crate::front::{FrontError, FrontStats};
@@ -25,6 +27,7 @@ use crate::mesh::MeshData;
 use crate::mesher::{Observer, Options, OptionsError, Stage};
 use crate::model::Model;
 use crate::size::Prediction;
+use crate::structured::{GridMethod, GridStats};
 use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
 use growth::{Source, SpaceField};
@@ -32,6 +35,21 @@ use lift::Weld;
 use outline::{Node, Outline};
 use patch::Draft;
 use sizing::Curvature;
+use structured::Quarters;
+
+pub use structured::PatchGridError;
+
+/// How the patches are meshed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SurfaceMethod {
+    /// By the front in (u, v).
+    #[default]
+    Front,
+    /// By a front in space whose points are brought back to the surface.
+    Direct,
+    /// By structured grids in (u, v).
+    Grid(GridMethod),
+}
 
 /// Options of the surface mesher.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +61,8 @@ pub struct SurfaceOptions {
     pub chord_error: Option<f64>,
     /// Largest turn of the normal along an edge, in degrees.
     pub angle_per_edge_deg: Option<f64>,
+    /// How the patches are meshed.
+    pub method: SurfaceMethod,
 }
 
 /// A surface mesh and how it came about.
@@ -60,6 +80,8 @@ pub struct SurfaceMeshed {
     pub front: FrontStats,
     /// Flips and moves of the improvement.
     pub improved: [u64; 2],
+    /// How structured grids came out, one a smooth patch.
+    pub grids: Vec<GridStats>,
 }
 
 /// Why there is no surface mesh.
@@ -100,6 +122,22 @@ pub enum SurfaceMeshError {
         /// Where.
         at: Vector,
     },
+    /// A front in space did not close.
+    #[error(
+        "the front in space on patch {name} did not close: {edges} edges are left near {at:?}; take \
+         a smaller --spacing, or the method of (u, v)"
+    )]
+    Stuck {
+        /// The patch.
+        name: String,
+        /// Where.
+        at: Vector,
+        /// Front edges left.
+        edges: usize,
+    },
+    /// A patch has no structured grid.
+    #[error(transparent)]
+    Grid(#[from] PatchGridError),
     /// The prediction is above the limit.
     #[error(
         "the spacings ask for {}{predicted:.0} triangles, above the limit of {limit}: raise --max-triangles, or take a larger --spacing",
@@ -177,6 +215,12 @@ pub fn mesh_model(
     observer.stage(Stage::Background);
     let plan = Plan::new(model, options)?;
     let nodes = plan.nodes(model)?;
+    if let SurfaceMethod::Grid(method) = options.method {
+        return plan.grids(model, &nodes, (method, options.common.triangles_max), observer);
+    }
+    if options.method == SurfaceMethod::Direct {
+        return plan.direct(model, &nodes, &options.common, observer);
+    }
     let drafts = plan.drafts(model, &nodes)?;
 
     observer.stage(Stage::Size);
@@ -190,14 +234,7 @@ pub fn mesh_model(
 
     observer.stage(Stage::Front);
     let mut weld = Weld::new(&plan.outline);
-    let mut meshed = SurfaceMeshed {
-        mesh: MeshData::default(),
-        prediction,
-        patches: plan.outline.pieces.len(),
-        curves: plan.outline.curves.iter().filter(|shared| shared.uses > 0).count(),
-        front: FrontStats::default(),
-        improved: [0; 2],
-    };
+    let mut meshed = plan.nothing_yet(prediction);
     for (i, (draft, predicted)) in drafts.into_iter().zip(predictions).enumerate() {
         let done = weld.mesh.triangles.len();
         // A triangle mesh has half as many vertices as triangles; the backstop is three times that.
@@ -269,6 +306,48 @@ impl Plan {
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
         Ok(Self { outline, field, curvature })
+    }
+
+    /// What is told of a run before its first triangle.
+    fn nothing_yet(&self, prediction: Prediction) -> SurfaceMeshed {
+        SurfaceMeshed {
+            mesh: MeshData::default(),
+            prediction,
+            patches: self.outline.pieces.len(),
+            curves: self.outline.curves.iter().filter(|shared| shared.uses > 0).count(),
+            front: FrontStats::default(),
+            improved: [0; 2],
+            grids: Vec::new(),
+        }
+    }
+
+    /// Structured grids on all patches.
+    fn grids(
+        &self,
+        model: &Model,
+        nodes: &[Vec<Node>],
+        (method, limit): (GridMethod, usize),
+        observer: &mut dyn Observer,
+    ) -> Result<SurfaceMeshed, SurfaceMeshError> {
+        observer.stage(Stage::Size);
+        let quarters = Quarters::all(self, model, nodes)?;
+        let triangles = quarters.iter().map(|q| q.triangles() as f64).sum();
+        if triangles > limit as f64 {
+            return Err(SurfaceMeshError::TooMany { predicted: triangles, stopped: false, limit });
+        }
+        let prediction = Prediction { triangles, stopped: false };
+        if !observer.predicted(prediction) {
+            return Err(FrontError::Stopped.into());
+        }
+        observer.stage(Stage::Grid);
+        let mut weld = Weld::new(&self.outline);
+        let mut meshed = self.nothing_yet(prediction);
+        for quarter in &quarters {
+            meshed.grids.push(quarter.lay(method, &mut weld)?);
+        }
+        observer.stage(Stage::Collect);
+        meshed.mesh = weld.finish(model, &self.outline);
+        Ok(meshed)
     }
 
     fn nodes(&self, model: &Model) -> Result<Vec<Vec<Node>>, SurfaceMeshError> {

@@ -35,6 +35,7 @@ pub fn run(bytes: &[u8]) {
             | MeshError::TooMany { .. }
             | MeshError::Refine(_)
             | MeshError::Split(_)
+            | MeshError::Grid(_)
             | MeshError::Options(_),
         ) => {}
         Err(

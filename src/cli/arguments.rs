@@ -2,9 +2,11 @@
 //! page, the completions and the tests.
 
 mod plot;
+mod remesh;
 mod study;
 
 pub use plot::{Colour, PlotArguments};
+pub use remesh::RemeshArguments;
 pub use study::{CompareArguments, StudyArguments, StudySize};
 
 use crate::check::report::Form;
@@ -69,6 +71,8 @@ pub enum Verb {
     Mesh(Box<MeshArguments>),
     /// Check a mesh exactly, anybody's mesh, with or without its domain.
     Check(Box<CheckArguments>),
+    /// Remesh a triangulated surface: edges of a wanted length, features kept.
+    Remesh(RemeshArguments),
     /// Triangulate points, or points and segments, by Delaunay's criterion.
     Delaunay(Box<DelaunayArguments>),
     /// Tessellate the plane by the nearest of some points.
@@ -218,6 +222,10 @@ pub struct MeshOptions {
     /// way, see --split-boundary.
     #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
     pub min_angle: Option<f64>,
+    /// The four corners of a structured grid: vertices of the boundary, counted from 0 in the file's
+    /// order; without it the four sharpest.
+    #[arg(long, value_name = "I,J,K,L", value_parser = parse_corners)]
+    pub corners: Option<[u32; 4]>,
     /// Allow new points on the boundary and on constraints: where --min-angle demands them, and
     /// with the other methods where the spacing jumps or a gap is narrow.
     #[arg(long)]
@@ -250,6 +258,10 @@ impl MeshOptions {
                 Method::Direct => mesher::Method::Direct,
                 Method::DelaunayInitial => mesher::Method::DelaunayInitial,
                 Method::Delaunay => mesher::Method::Delaunay,
+                Method::Transfinite => mesher::Method::Transfinite,
+                Method::Elliptic => mesher::Method::Elliptic,
+                // Refused for plane domains, and asked for by its own option for models.
+                Method::DirectSurface => mesher::Method::Graded,
             },
             density: match self.density {
                 Density::AllEdges => size::Density::AllEdges,
@@ -286,6 +298,7 @@ impl MeshOptions {
             }),
             angle_min_deg: self.min_angle.unwrap_or(0.0),
             split_boundary: self.split_boundary,
+            corners: self.corners,
             ..defaults
         }
     }
@@ -327,6 +340,12 @@ pub enum Method {
     DelaunayInitial,
     /// The same refined until areas and angles are within their bounds.
     Delaunay,
+    /// Structured grid of a four-sided domain or patches: transfinite interpolation of the sides.
+    Transfinite,
+    /// The same, smoothed by the inverse Laplace equations.
+    Elliptic,
+    /// Surface models: the front advances in space, new points are brought back to the surface.
+    DirectSurface,
 }
 
 /// `--density`
@@ -824,6 +843,12 @@ fn parse_gradation(text: &str) -> Result<mesher::Gradation, String> {
             mesher::Gradation::Expression(expression)
         }
     })
+}
+
+fn parse_corners(text: &str) -> Result<[u32; 4], String> {
+    let wrong = || format!("`{text}` is not four vertices such as 0,10,20,30");
+    let numbers: Result<Vec<u32>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    numbers.map_err(|_| wrong())?.try_into().map_err(|_| wrong())
 }
 
 fn parse_spacing_at(text: &str) -> Result<(i32, f64), String> {

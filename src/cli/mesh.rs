@@ -1,6 +1,6 @@
 //! `trigrade mesh`: domain in, checked mesh out.
 
-use super::arguments::{Farfield, MeshArguments};
+use super::arguments::{Farfield, MeshArguments, Method};
 use super::check::write_json;
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
@@ -24,6 +24,7 @@ use crate::format::{MeshForm, MeshView, WriteOptions, write_mesh};
 use crate::mesh::MeshData;
 use crate::mesher::{Count, Fit, MeshError, Meshed, Observer, Options, mesh_plc};
 use crate::size::Prediction;
+use crate::structured::GridStats;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -44,6 +45,10 @@ pub fn run(
     let mut watch = Watch::new(console);
     if let Some(flag) = arguments.options.idle_flag() {
         let message = format!("{flag} has a meaning with `--method delaunay` only");
+        return Err(Failure::cannot_run(Diagnostic::new(message)));
+    }
+    if arguments.options.method == Method::DirectSurface {
+        let message = "`--method direct-surface` has a meaning for surface models only";
         return Err(Failure::cannot_run(Diagnostic::new(message)));
     }
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
@@ -124,7 +129,9 @@ fn predict(plc: Plc, options: &Options) -> Result<Prediction, Failure> {
 pub fn no_mesh(error: &MeshError) -> Failure {
     let diagnostic = Diagnostic::new(error.to_string());
     match error {
-        MeshError::Invalid(_) | MeshError::Background(_) => Failure::findings(vec![diagnostic]),
+        MeshError::Invalid(_) | MeshError::Background(_) | MeshError::Grid(_) => {
+            Failure::findings(vec![diagnostic])
+        }
         MeshError::TooMany { .. } => Failure::cannot_run(
             diagnostic
                 .help("`--dry-run` prints the prediction; a larger --max-triangles allows it")
@@ -242,6 +249,7 @@ struct Summary {
     refinement: Option<Refinement>,
     splits: usize,
     fit: Option<Fit>,
+    grid: Option<GridStats>,
     target: Option<usize>,
     check: Option<(String, Report)>,
     written: Vec<PathBuf>,
@@ -258,6 +266,7 @@ impl Summary {
             refinement: None,
             splits: 0,
             fit: None,
+            grid: None,
             target: None,
             check: None,
             written: Vec::new(),
@@ -271,6 +280,7 @@ impl Summary {
         self.splits = meshed.splits;
         self.mesh = Some((meshed.mesh.points.len(), meshed.mesh.triangles.len()));
         self.fit = meshed.fit;
+        self.grid = meshed.grid;
     }
 
     /// What to say when the target was not reached: the boundary alone may ask for more or less.
@@ -307,6 +317,9 @@ impl Summary {
         if let Some((points, triangles)) = self.mesh {
             let [triangles, points] = [triangles, points].map(|n| count(n as u64));
             line("meshed", format!("{triangles} triangles, {points} points"));
+        }
+        if let Some(grid) = &self.grid {
+            line("grid", grid_in_words(grid));
         }
         if self.splits > 0 {
             line("boundary", format!("{} points added", count(self.splits as u64)));
@@ -378,11 +391,29 @@ impl Summary {
                 "percentile_99": fit.high,
                 "edges": fit.edges,
             })),
+            "grid": self.grid.map(|grid| json!({
+                "columns": grid.columns,
+                "rows": grid.rows,
+                "sweeps": grid.relaxed.map(|done| done.sweeps),
+                "residual": grid.relaxed.map(|done| done.residual),
+            })),
             "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
             "written": file_names(&self.written),
             "seconds": seconds(laps),
             "check": self.check.as_ref().map(|(_, report)| report),
         })
+    }
+}
+
+/// A structured grid in words.
+#[must_use]
+pub fn grid_in_words(grid: &GridStats) -> String {
+    let cells = format!("{} x {} cells", grid.columns, grid.rows);
+    match grid.relaxed {
+        None => cells,
+        Some(done) => {
+            format!("{cells}, {} sweeps, residual {:.1e}", done.sweeps, done.residual)
+        }
     }
 }
 

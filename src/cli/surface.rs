@@ -1,6 +1,6 @@
 //! `trigrade mesh` on a surface model, and `trigrade check --surface`.
 
-use super::arguments::MeshArguments;
+use super::arguments::{MeshArguments, Method};
 use super::console::Console;
 use super::domain_file::malformed;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
@@ -19,7 +19,10 @@ use crate::mesh::MeshData;
 use crate::mesher::Observer;
 use crate::model::Model;
 use crate::size::Prediction;
-use crate::surface_mesher::{SurfaceMeshError, SurfaceMeshed, SurfaceOptions, mesh_model};
+use crate::structured::GridMethod;
+use crate::surface_mesher::{
+    SurfaceMeshError, SurfaceMeshed, SurfaceMethod, SurfaceOptions, mesh_model,
+};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -66,6 +69,7 @@ pub fn run(
         common: arguments.options.options(),
         chord_error: arguments.on_surface.chord_error,
         angle_per_edge_deg: arguments.on_surface.angle_per_edge,
+        method: method(arguments)?,
     };
     let mut outputs = Outputs::prepare(&paths(&files), cleanup)?;
     let mut summary =
@@ -90,6 +94,20 @@ pub fn run(
     }
     let laps = watch.finish();
     Ok(summary.outcome(&laps, arguments.timings))
+}
+
+/// How the patches are meshed.
+fn method(arguments: &MeshArguments) -> Result<SurfaceMethod, Failure> {
+    if arguments.options.corners.is_some() {
+        let message = "--corners has a meaning for plane domains only: patches have their own";
+        return Err(Failure::cannot_run(Diagnostic::new(message)));
+    }
+    Ok(match arguments.options.method {
+        Method::Transfinite => SurfaceMethod::Grid(GridMethod::Transfinite),
+        Method::Elliptic => SurfaceMethod::Grid(GridMethod::Elliptic),
+        Method::DirectSurface => SurfaceMethod::Direct,
+        _ => SurfaceMethod::Front,
+    })
 }
 
 fn refuse_certificate(arguments: &MeshArguments) -> Result<(), Failure> {
@@ -130,9 +148,11 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
     match error {
         SurfaceMeshError::Empty
         | SurfaceMeshError::Curve { .. }
+        | SurfaceMeshError::Grid(_)
         | SurfaceMeshError::Outline { .. }
         | SurfaceMeshError::Flat { .. } => Failure::findings(vec![diagnostic]),
         SurfaceMeshError::Coarse { .. }
+        | SurfaceMeshError::Stuck { .. }
         | SurfaceMeshError::TooMany { .. }
         | SurfaceMeshError::Front(_)
         | SurfaceMeshError::Options(_) => Failure::cannot_run(diagnostic),

@@ -19,6 +19,10 @@ pub enum Method {
     DelaunayInitial,
     /// The same with points inserted until areas and angles are within their bounds.
     Delaunay,
+    /// A structured grid of a four-sided domain by transfinite interpolation.
+    Transfinite,
+    /// The same, smoothed by the inverse Laplace equations.
+    Elliptic,
 }
 
 /// How large a triangle may be (method delaunay).
@@ -102,6 +106,9 @@ pub struct Options {
     /// Whether the boundary and constraints may be split: by the method delaunay where an angle
     /// demands it, by the others where the spacing jumps or a gap is narrow.
     pub split_boundary: bool,
+    /// The four corners of a structured grid: indices of the domain's points. `None` takes the four
+    /// sharpest vertices of the boundary.
+    pub corners: Option<[u32; 4]>,
 }
 
 impl Default for Options {
@@ -126,6 +133,7 @@ impl Default for Options {
             area_max: AreaMax::Field,
             angle_min_deg: 0.0,
             split_boundary: false,
+            corners: None,
         }
     }
 }

@@ -142,5 +142,6 @@ fn collect(
         refine: Some(stats),
         splits,
         fit: None,
+        grid: None,
     }
 }

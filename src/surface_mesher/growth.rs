@@ -9,14 +9,14 @@ use crate::vector::{Vector, distance};
 
 /// A source: a point and the spacing wanted there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Source {
-    pub(super) at: Vector,
-    pub(super) spacing: f64,
+pub(crate) struct Source {
+    pub(crate) at: Vector,
+    pub(crate) spacing: f64,
 }
 
 /// Growth-limited distance field in space.
 #[derive(Debug)]
-pub(super) struct SpaceField {
+pub(crate) struct SpaceField {
     growth: f64,
     cap: f64,
     origin: Vector,
@@ -79,7 +79,7 @@ impl Cell {
 
 impl SpaceField {
     /// Builds the field; `cap` may be infinite when there is a source.
-    pub(super) fn new(sources: &[Source], growth: f64, cap: f64) -> Self {
+    pub(crate) fn new(sources: &[Source], growth: f64, cap: f64) -> Self {
         let useful: Vec<Source> = sources.iter().copied().filter(|s| s.spacing < cap).collect();
         let (origin, size) = bounding_cube(&useful);
         let mut field = Self { growth, cap, origin, size, nodes: vec![EMPTY], sources: Vec::new() };
@@ -88,7 +88,7 @@ impl SpaceField {
     }
 
     /// The spacing at `p`.
-    pub(super) fn at(&self, p: Vector) -> f64 {
+    pub(crate) fn at(&self, p: Vector) -> f64 {
         let mut x: Vector =
             std::array::from_fn(|i| ((p[i] - self.origin[i]) / self.size).clamp(0.0, 1.0));
         let mut node = self.nodes[0];

@@ -52,6 +52,13 @@ impl Weld {
         Ok(())
     }
 
+    /// Adds a triangle of a patch, by vertices of the whole mesh.
+    pub(super) fn push(&mut self, piece: u32, marker: i32, corners: [u32; 3]) {
+        self.mesh.triangles.push(corners);
+        self.mesh.regions.push(marker);
+        self.pieces.push(piece);
+    }
+
     /// The mesh, with marked edges, all patches facing alike, without points that nothing uses.
     pub(super) fn finish(mut self, model: &Model, outline: &Outline) -> MeshData {
         let mut facing = Facing::of(model, outline);

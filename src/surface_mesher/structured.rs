@@ -1,0 +1,245 @@
+//! The methods transfinite and elliptic on the patches of a model: a structured grid in (u, v),
+//! measured in space.
+
+use super::lift::Weld;
+use super::outline::{Node, Piece};
+use super::{Plan, SurfaceMeshError};
+use crate::metric::FirstForm;
+use crate::model::Model;
+use crate::point::Point2;
+use crate::structured::{
+    Chart, Folded, Grid, GridMethod, GridStats, Sides, fractions, relax, transfinite,
+};
+use crate::surface::{Side, Surface};
+use crate::vector::{Vector, distance, dot};
+
+/// Why a patch has no structured grid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PatchGridError {
+    /// A side is a point.
+    #[error(
+        "patch {name} has no structured grid: its {side} side is a pole; take another --method"
+    )]
+    Pole {
+        /// The patch.
+        name: String,
+        /// The side.
+        side: &'static str,
+    },
+    /// The outline is not that of the four sides.
+    #[error("patch {name} has no structured grid: it does not end in the four sides of its (u, v)")]
+    Trimmed {
+        /// The patch.
+        name: String,
+    },
+    /// Opposite sides of different length.
+    #[error(
+        "patch {name} has {} and {} edges on its south and north sides, {} and {} on east and west: \
+         opposite sides of a structured grid need equal numbers; give their curves a `count`",
+        .counts[0], .counts[2], .counts[1], .counts[3]
+    )]
+    Counts {
+        /// The patch.
+        name: String,
+        /// Edges of south, east, north, west.
+        counts: [usize; 4],
+    },
+    /// Cells turned over.
+    #[error(
+        "the grid of patch {name} folds: {count} of its cells have no diagonal with both triangles \
+         counterclockwise in (u, v), the first in column {column} and row {row} near {at:?}"
+    )]
+    Folded {
+        /// The patch.
+        name: String,
+        /// How many.
+        count: usize,
+        /// Column of the first, from 0.
+        column: usize,
+        /// Row of the first, from 0.
+        row: usize,
+        /// A corner of it in space.
+        at: Vector,
+    },
+}
+
+/// A patch as a chart of its parameters.
+struct OnSurface<'a>(&'a Surface);
+
+impl Chart for OnSurface<'_> {
+    fn form(&self, p: Point2) -> FirstForm {
+        FirstForm::new(&self.0.tangents(p.x, p.y))
+    }
+
+    fn beltrami(&self, p: Point2) -> [f64; 2] {
+        let jet = self.0.jet(p.x, p.y);
+        let (xu, xv) = (jet.tangents.u, jet.tangents.v);
+        let FirstForm { e, f, g } = FirstForm::new(&jet.tangents);
+        let [eu, ev] = [2.0 * dot(xu, jet.uu), 2.0 * dot(xu, jet.uv)];
+        let [gu, gv] = [2.0 * dot(xv, jet.uv), 2.0 * dot(xv, jet.vv)];
+        let [fu, fv] = [dot(jet.uu, xv) + dot(xu, jet.uv), dot(jet.uv, xv) + dot(xu, jet.vv)];
+        let square = e * g - f * f;
+        // W_u / W and W_v / W of the unit of area W.
+        let turn = |eu: f64, fu: f64, gu: f64| (eu * g + e * gu - 2.0 * f * fu) / (2.0 * square);
+        let (wu, wv) = (turn(eu, fu, gu), turn(ev, fv, gv));
+        let both = [gu - fv - (g * wu - f * wv), ev - fu - (e * wv - f * wu)];
+        both.map(|x| if square > 0.0 { x / square } else { 0.0 })
+    }
+}
+
+/// A patch between its four sides, ready to be gridded.
+pub(super) struct Quarters<'a> {
+    piece: usize,
+    surface: &'a Surface,
+    name: &'a str,
+    marker: i32,
+    sides: Sides<Node>,
+}
+
+impl<'a> Quarters<'a> {
+    /// All patches of a plan, with their four sides.
+    pub(super) fn all(
+        plan: &'a Plan,
+        model: &'a Model,
+        nodes: &[Vec<Node>],
+    ) -> Result<Vec<Self>, PatchGridError> {
+        let pieces = plan.outline.pieces.iter().enumerate().zip(nodes);
+        pieces.map(|((i, piece), nodes)| Self::new(i, piece, model, nodes)).collect()
+    }
+
+    fn new(
+        index: usize,
+        piece: &'a Piece,
+        model: &'a Model,
+        nodes: &[Node],
+    ) -> Result<Self, PatchGridError> {
+        let patch = &model.patches[piece.patch];
+        let name = || patch.name.clone();
+        if let Some(side) = Side::ALL.iter().find(|&&side| piece.sides[side as usize].is_empty()) {
+            return Err(PatchGridError::Pole { name: name(), side: side.name() });
+        }
+        let corners = corners(&piece.surface, nodes);
+        let corners = corners.ok_or_else(|| PatchGridError::Trimmed { name: name() })?;
+        let sides = Sides::of_loop(nodes, corners);
+        let counts = sides.counts();
+        if counts[0] != counts[2] || counts[1] != counts[3] {
+            return Err(PatchGridError::Counts { name: name(), counts });
+        }
+        let (surface, marker) = (&piece.surface, patch.marker);
+        Ok(Self { piece: index, surface, name: &patch.name, marker, sides })
+    }
+
+    /// Triangles of the grid.
+    pub(super) fn triangles(&self) -> usize {
+        let [columns, rows, ..] = self.sides.counts();
+        2 * columns * rows
+    }
+
+    /// Lays the grid and welds it to the rest.
+    pub(super) fn lay(
+        &self,
+        method: GridMethod,
+        weld: &mut Weld,
+    ) -> Result<GridStats, SurfaceMeshError> {
+        let at = |node: Node| weld.mesh.points[node.vertex as usize];
+        let of = |side: &[Node]| fractions(side, |a, b| distance(at(a), at(b)));
+        let Sides { south, east, north, west } = &self.sides;
+        let along = Sides { south: of(south), east: of(east), north: of(north), west: of(west) };
+        let mut grid = transfinite(&self.sides.map(|n| Point2::new(n.u, n.v)), &along);
+        let relaxed =
+            (method == GridMethod::Elliptic).then(|| relax(&mut grid, &OnSurface(self.surface)));
+        let new: Vec<Vector> = grid.points.iter().map(|p| self.surface.at(p.x, p.y)).collect();
+        let space = grid.with_sides(&self.sides.map(at), &new);
+        let triangles =
+            grid.triangles(&space).map_err(|folded| self.folded(folded, &grid, &space))?;
+        let numbers = self.number(&grid, &space, weld);
+        for corners in triangles {
+            let corners = corners.map(|v| numbers[v as usize]);
+            let [a, b, c] = corners;
+            if a == b || b == c || c == a {
+                let at = weld.mesh.points[if a == b { a } else { c } as usize];
+                return Err(SurfaceMeshError::Coarse { name: self.name.to_owned(), at });
+            }
+            weld.push(self.piece as u32, self.marker, corners);
+        }
+        Ok(GridStats { columns: grid.columns, rows: grid.rows, relaxed })
+    }
+
+    /// The model's vertex of each grid point; inner ones are new.
+    fn number(&self, grid: &Grid, space: &[Vector], weld: &mut Weld) -> Vec<u32> {
+        let known = grid.with_sides(&self.sides.map(|n| n.vertex), &vec![u32::MAX; space.len()]);
+        let mut new = |at: Vector| {
+            weld.mesh.points.push(at);
+            weld.mesh.points.len() as u32 - 1
+        };
+        let number = |(v, &at): (u32, &Vector)| if v == u32::MAX { new(at) } else { v };
+        known.into_iter().zip(space).map(number).collect()
+    }
+
+    fn folded(&self, folded: Folded, grid: &Grid, space: &[Vector]) -> PatchGridError {
+        let Folded { count, column, row } = folded;
+        let at = space[grid.cell(column, row)[0]];
+        PatchGridError::Folded { name: self.name.to_owned(), count, column, row, at }
+    }
+}
+
+/// Positions of the corners of (u, v) among the nodes, if all nodes lie on the four sides.
+fn corners(surface: &Surface, nodes: &[Node]) -> Option<[usize; 4]> {
+    let [[u0, u1], [v0, v1]] = surface.domain();
+    let on_side = |n: &Node| n.u == u0 || n.u == u1 || n.v == v0 || n.v == v1;
+    let find = |u: f64, v: f64| nodes.iter().position(|n| n.u == u && n.v == v);
+    let corners = [find(u0, v0)?, find(u1, v0)?, find(u1, v1)?, find(u0, v1)?];
+    nodes.iter().all(on_side).then_some(corners)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::Curve;
+    use crate::surface::{Revolution, Tensor};
+
+    /// Differences of the surface's own metric.
+    fn by_differences(surface: &Surface, p: Point2) -> [f64; 2] {
+        let h = 1e-5;
+        let flux = |u: f64, v: f64| {
+            let form = FirstForm::new(&surface.tangents(u, v));
+            let w = form.area();
+            [form.g / w, form.f / w, form.e / w]
+        };
+        let [east, west] = [flux(p.x + h, p.y), flux(p.x - h, p.y)];
+        let [north, south] = [flux(p.x, p.y + h), flux(p.x, p.y - h)];
+        let du = |k: usize| (east[k] - west[k]) / (2.0 * h);
+        let dv = |k: usize| (north[k] - south[k]) / (2.0 * h);
+        let w = FirstForm::new(&surface.tangents(p.x, p.y)).area();
+        [(du(0) - dv(1)) / w, (dv(2) - du(1)) / w]
+    }
+
+    // spec: W7
+    #[test]
+    fn the_laplacian_of_the_parameters_is_that_of_the_metric() {
+        let rows = vec![
+            vec![[0.0, 0.0, 0.0], [0.2, 1.0, 1.0], [0.0, 2.0, 0.0]],
+            vec![[1.0, 0.1, 0.5], [1.1, 1.3, 1.0], [1.0, 2.2, -0.5]],
+            vec![[2.5, 0.0, 0.0], [2.0, 1.0, -1.0], [3.0, 2.0, 0.3]],
+        ];
+        let bent = Surface::Tensor(Tensor::bezier(&rows).expect("a patch"));
+        let profile = Curve::arc([0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]).expect("ok");
+        let sphere = Revolution::new(profile, [0.0; 3], [0.0, 0.0, 1.0], [0.0, 360.0]);
+        let sphere = Surface::Revolution(sphere.expect("a sphere"));
+        for surface in [bent, sphere] {
+            let [[u0, u1], [v0, v1]] = surface.domain();
+            for (s, t) in [(0.3, 0.4), (0.45, 0.71), (0.62, 0.2)] {
+                let p = Point2::new(u0 + s * (u1 - u0), v0 + t * (v1 - v0));
+                let (found, expected) =
+                    (OnSurface(&surface).beltrami(p), by_differences(&surface, p));
+                for k in 0..2 {
+                    let scale = 1.0 + expected[k].abs();
+                    assert!(
+                        (found[k] - expected[k]).abs() < 1e-5 * scale,
+                        "{found:?} {expected:?}"
+                    );
+                }
+            }
+        }
+    }
+}
