@@ -9,6 +9,7 @@
 //! space (SPEC 12).
 
 mod chart;
+mod excess;
 mod flip;
 mod growth;
 mod lift;
@@ -172,8 +173,29 @@ pub fn mesh_model(
     observer: &mut dyn Observer,
 ) -> Result<SurfaceMeshed, SurfaceMeshError> {
     options.check()?;
+    let mut finer = Vec::new();
+    for _ in 1..ROUNDS {
+        let (meshed, excess) = mesh_once(model, options, &finer, observer)?;
+        if excess.is_empty() {
+            return Ok(meshed);
+        }
+        finer.extend(excess);
+    }
+    Ok(mesh_once(model, options, &finer, observer)?.0)
+}
+
+/// Times that a model is meshed at most, to keep the chord error asked for.
+const ROUNDS: usize = 4;
+
+/// Meshes a model with some more sources of spacing; gives the mesh, and the sources that it lacks.
+fn mesh_once(
+    model: &Model,
+    options: &SurfaceOptions,
+    finer: &[Source],
+    observer: &mut dyn Observer,
+) -> Result<(SurfaceMeshed, Vec<Source>), SurfaceMeshError> {
     observer.stage(Stage::Background);
-    let plan = Plan::new(model, options)?;
+    let plan = Plan::new(model, options, finer)?;
     let rims = plan.rims(model)?;
     let drafts = plan.drafts(model, &rims)?;
 
@@ -205,6 +227,7 @@ pub fn mesh_model(
             patches.iter().map(|patch: &PatchMesh| patch.mesh.triangles().count()).sum();
         patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
     }
+    let excess = plan.excess(&patches);
     for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
         meshed.front.accepted_existing += patch.stats.accepted_existing;
@@ -217,7 +240,7 @@ pub fn mesh_model(
     }
     observer.stage(Stage::Collect);
     (meshed.mesh, meshed.parameters) = weld.finish(model, &plan.outline, &rims);
-    Ok(meshed)
+    Ok((meshed, excess))
 }
 
 /// Patches that are meshed at the same time; between such groups the observer is asked whether to
@@ -274,7 +297,11 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(model: &Model, options: &SurfaceOptions) -> Result<Self, SurfaceMeshError> {
+    fn new(
+        model: &Model,
+        options: &SurfaceOptions,
+        finer: &[Source],
+    ) -> Result<Self, SurfaceMeshError> {
         let mut outline = Outline::new(model)?;
         if outline.pieces.is_empty() {
             return Err(SurfaceMeshError::Empty);
@@ -293,6 +320,7 @@ impl Plan {
         let mut sources = Vec::new();
         if curvature.is_on() {
             sources = samples(&outline, &curvature);
+            sources.extend(finer);
             let field = SpaceField::new(&sources, growth, spacing);
             outline.cut(|jet| curvature.along(jet).min(field.at(jet.point)))?;
         } else {
@@ -302,6 +330,17 @@ impl Plan {
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
         Ok(Self { outline, field, curvature, tolerance: ROUNDING * diagonal })
+    }
+
+    /// Where the patches leave their surfaces too far.
+    fn excess(&self, patches: &[PatchMesh]) -> Vec<Source> {
+        let Some(limit) = self.curvature.chord_error else { return Vec::new() };
+        let floor = self.curvature.floor;
+        let of = |(i, patch): (usize, &PatchMesh)| {
+            excess::excess(&self.outline.pieces[i].surface, patch, limit, floor)
+        };
+        let lists: Vec<Vec<Source>> = patches.par_iter().enumerate().map(of).collect();
+        lists.concat()
     }
 
     fn rims(&self, model: &Model) -> Result<Vec<Rim>, SurfaceMeshError> {

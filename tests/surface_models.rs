@@ -86,7 +86,10 @@ fn the_examples_are_meshed_watertight_and_well_shaped() {
     let mut names = Vec::new();
     for (name, model) in examples() {
         let meshed = run(&model, &SurfaceOptions::default()).expect("a mesh");
-        let bounds = if name == "two_coons" { [1.06, 2.2] } else { [1.03, 1.9] };
+        let bounds = match name.as_str() {
+            "two_coons" | "teapot" => [1.06, 2.2],
+            _ => [1.03, 1.9],
+        };
         let surface = assert_sound(&name, &model, &meshed.mesh, bounds);
         let closed = ["pot", "sphere", "torus"].contains(&name.as_str());
         assert_eq!(surface.boundary_edges == 0, closed, "{name}");
@@ -193,7 +196,7 @@ fn a_closed_model_faces_outwards() {
 
 // spec: S6
 #[test]
-fn the_chord_error_asked_for_is_kept_but_beside_poles() {
+fn the_chord_error_asked_for_is_kept_beside_poles_too() {
     let one = Model { spacing: None, ..model(vec![sphere()], 1.0) };
     for error in [1e-2, 1e-3] {
         let options = SurfaceOptions { chord_error: Some(error), ..SurfaceOptions::default() };
@@ -206,8 +209,7 @@ fn the_chord_error_asked_for_is_kept_but_beside_poles() {
         });
         let worst = middles.fold(0.0, f64::max);
         assert!(worst <= surface.chord_error + 1e-12, "{worst} {}", surface.chord_error);
-        // Beside the poles edges are too long: by up to 1.8 times.
-        assert!(surface.chord_error <= 3.5 * error, "{} for {error}", surface.chord_error);
+        assert!(surface.chord_error <= error, "{} for {error}", surface.chord_error);
     }
 }
 

@@ -194,14 +194,19 @@ impl Outline {
                 Ok(pieces.into_iter().enumerate().map(cut).collect())
             }
             TrimCurve::Parameters { curve, rule, marker } => {
+                let trace = |parameters: &Curve| {
+                    let (surface, parameters) = (surface.clone(), parameters.clone());
+                    Line::Trace(Box::new(Trace { surface, parameters }))
+                };
+                let failed = |error| SurfaceMeshError::Curve { name: name.clone(), error };
+                let all = rule.map(|rule| nodes(&trace(curve), rule)).transpose();
+                let all = all.map_err(failed)?.unwrap_or_default();
                 let mut cuts = Vec::new();
                 for parameters in curve.pieces() {
-                    let trace = Trace { surface: surface.clone(), parameters: parameters.clone() };
-                    let line = Line::Trace(Box::new(trace));
-                    let failed = |error| SurfaceMeshError::Curve { name: name.clone(), error };
-                    let nodes = rule.map(|rule| nodes(&line, rule)).transpose().map_err(failed)?;
-                    let mut shared = Shared::new(line, &name);
-                    shared.nodes = nodes.unwrap_or_default();
+                    let [start, end] = parameters.domain();
+                    let inside = all.iter().filter(|t| **t >= start && **t <= end);
+                    let mut shared = Shared::new(trace(&parameters), &name);
+                    shared.nodes = inside.copied().collect();
                     (shared.marker, shared.uses) = (*marker, 1);
                     let curve = self.curves.len();
                     self.curves.push(shared);

@@ -148,7 +148,7 @@ fn foot(surface: &Surface, near: Option<[f64; 2]>, p: Vector, tolerance: f64) ->
 }
 
 /// Gauss and Newton's steps in the rectangle of parameters, halved where they lead away.
-fn descend(surface: &Surface, from: [f64; 2], p: Vector) -> [f64; 2] {
+pub(super) fn descend(surface: &Surface, from: [f64; 2], p: Vector) -> [f64; 2] {
     let [[u0, u1], [v0, v1]] = surface.domain();
     let mut at = from;
     let mut tangents = surface.tangents(at[0], at[1]);
