@@ -253,9 +253,16 @@ impl<'a> Walk<'a> {
     /// The foot of a sample from a place near it, and from the lattice where that is not believed.
     fn sample(&self, against: &Against<'_>, near: Option<Seed>, p: Vector) -> Foot {
         match near.map(|near| self.sheets.foot_from(near, p)) {
-            Some(foot) if foot.distance <= against.believed => foot,
+            Some(foot) if foot.distance <= against.believed && self.is_inside(&foot) => foot,
             found => nearer(found, self.sheets.foot(against.tree, p)),
         }
+    }
+
+    /// Whether a foot lies inside its piece: on a side the search may have stopped short of a nearer
+    /// one on the next piece.
+    fn is_inside(&self, foot: &Foot) -> bool {
+        let domain = self.sheets.pieces[foot.seed.piece].0.domain();
+        (0..2).all(|i| foot.seed.at[i] > domain[i][0] && foot.seed.at[i] < domain[i][1])
     }
 
     /// Distance of the middle of an edge, which two triangles ask for.
