@@ -83,6 +83,8 @@ pub struct CheckOptions {
     pub constrained_delaunay: bool,
     /// Demand that a surface is closed.
     pub closed: bool,
+    /// Parts of a surface that do not hang together may cross each other.
+    pub crossing_parts: bool,
     /// Most findings listed per id; all are counted.
     pub list_limit: u64,
     /// Largest deviation of a subdividing node from its segment, in units in the last place of the
@@ -113,6 +115,7 @@ impl Default for CheckOptions {
             delaunay: false,
             constrained_delaunay: false,
             closed: false,
+            crossing_parts: false,
             list_limit: 20,
             deviation_ulps: 4.0,
             deviation_length: None,
@@ -177,6 +180,13 @@ impl CheckOptions {
     #[must_use]
     pub fn closed(mut self, on: bool) -> Self {
         self.closed = on;
+        self
+    }
+
+    /// Allows parts of a surface that do not hang together to cross each other.
+    #[must_use]
+    pub fn crossing_parts(mut self, on: bool) -> Self {
+        self.crossing_parts = on;
         self
     }
 

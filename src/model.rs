@@ -3,6 +3,7 @@
 use crate::curve::Curve;
 use crate::curve::discretize::Rule;
 use crate::surface::Surface;
+use std::collections::BTreeMap;
 
 /// A surface model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,8 +15,16 @@ pub struct Model {
     pub curves: Vec<ModelCurve>,
     /// Spacing of the curves without a rule, and the largest spacing inside patches.
     pub spacing: Option<f64>,
+    /// Largest distance of a triangle from the surface, where the mesher is not asked for another.
+    pub chord_error: Option<f64>,
+    /// Largest turn of the normal along an edge, in degrees, where it is not asked for another.
+    pub angle_per_edge_deg: Option<f64>,
     /// How far apart the ends of curves that meet in a corner of a Coons patch may be.
     pub corner_tolerance: Option<f64>,
+    /// What is cut away from patches, by their index.
+    pub trims: BTreeMap<usize, Trim>,
+    /// Whether parts that share no curve may cross each other: a handle that runs into its pot.
+    pub parts_may_cross: bool,
 }
 
 /// A patch of a model.
@@ -32,6 +41,45 @@ pub struct Patch {
     pub reversed: bool,
 }
 
+/// What is cut away from a patch by loops of curves, each ending where the next starts, the last
+/// where the first starts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trim {
+    /// The loop that takes the place of the sides.
+    pub outline: Option<Vec<TrimCurve>>,
+    /// The loops around holes.
+    pub holes: Vec<Vec<TrimCurve>>,
+}
+
+impl Trim {
+    /// All loops, the outline first.
+    pub fn loops(&self) -> impl Iterator<Item = &Vec<TrimCurve>> {
+        self.outline.iter().chain(&self.holes)
+    }
+}
+
+/// A curve of a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TrimCurve {
+    /// A curve of (u, v), which no other patch shares.
+    Parameters {
+        /// The curve; its z is 0.
+        curve: Curve,
+        /// How its image in space is cut into edges; the model's spacing where there is none.
+        rule: Option<Rule>,
+        /// Marker of its edges.
+        marker: Option<i32>,
+    },
+    /// A curve of space that lies on the surface: the same to the bit on all patches that share it.
+    Space {
+        /// The curve.
+        curve: Curve,
+        /// The same curve in (u, v), by the same parameter up to its range; found by projection
+        /// where it is not given.
+        parameters: Option<Curve>,
+    },
+}
+
 /// A curve of a model that the file says something about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelCurve {
@@ -43,6 +91,16 @@ pub struct ModelCurve {
     pub rule: Option<Rule>,
     /// Marker of its edges; curves without one are marked only where the surface ends.
     pub marker: Option<i32>,
+}
+
+impl Patch {
+    /// A patch that its file says nothing more about: named and marked by its number from 1.
+    #[must_use]
+    pub fn plain(index: usize, surface: Surface) -> Self {
+        let number = index + 1;
+        let marker = i32::try_from(number).unwrap_or(i32::MAX);
+        Self { name: number.to_string(), surface, marker, reversed: false }
+    }
 }
 
 impl Model {

@@ -8,10 +8,12 @@
 mod coons;
 mod revolution;
 mod tensor;
+mod trace;
 
 pub use coons::Coons;
 pub use revolution::Revolution;
 pub use tensor::Tensor;
+pub use trace::{Line, Trace};
 
 use crate::curve::{Curve, CurveError};
 use crate::vector::Vector;

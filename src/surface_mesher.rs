@@ -12,6 +12,7 @@
 
 mod chart;
 mod direct;
+mod excess;
 mod flip;
 pub(crate) mod growth;
 mod lift;
@@ -20,6 +21,7 @@ mod patch;
 mod sizing;
 mod smooth;
 mod structured;
+mod trim;
 
 use crate::curve::discretize::DiscretizeError;
 use crate::front::{FrontError, FrontStats};
@@ -32,8 +34,9 @@ use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
 use growth::{Source, SpaceField};
 use lift::Weld;
-use outline::{Node, Outline};
-use patch::Draft;
+use outline::{Outline, ROUNDING, Rim};
+use patch::{Draft, PatchMesh};
+use rayon::prelude::*;
 use sizing::Curvature;
 use structured::Quarters;
 
@@ -70,6 +73,9 @@ pub struct SurfaceOptions {
 pub struct SurfaceMeshed {
     /// The mesh; regions are the patches' markers.
     pub mesh: MeshData,
+    /// Parameters (u, v) of each point: on a curve that patches share those of the first of them.
+    /// Empty after [`SurfaceMethod::Direct`], which does not keep them.
+    pub parameters: Vec<[f64; 2]>,
     /// Triangles predicted before meshing.
     pub prediction: Prediction,
     /// Smooth patches.
@@ -101,6 +107,14 @@ pub enum SurfaceMeshError {
     /// The outline of a patch in (u, v) has no triangulation.
     #[error("patch {name} has no outline in (u, v): {reason}")]
     Outline {
+        /// The patch.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A loop of a trimmed patch is wrong.
+    #[error("patch {name} cannot be trimmed: {reason}")]
+    Trim {
         /// The patch.
         name: String,
         /// Why not.
@@ -212,16 +226,38 @@ pub fn mesh_model(
     observer: &mut dyn Observer,
 ) -> Result<SurfaceMeshed, SurfaceMeshError> {
     options.check()?;
+    let mut finer = Vec::new();
+    for _ in 1..ROUNDS {
+        let (meshed, excess) = mesh_once(model, options, &finer, observer)?;
+        if excess.is_empty() {
+            return Ok(meshed);
+        }
+        finer.extend(excess);
+    }
+    Ok(mesh_once(model, options, &finer, observer)?.0)
+}
+
+/// Times that a model is meshed at most, to keep the chord error asked for.
+const ROUNDS: usize = 4;
+
+/// Meshes a model with some more sources of spacing; gives the mesh, and the sources that it lacks.
+fn mesh_once(
+    model: &Model,
+    options: &SurfaceOptions,
+    finer: &[Source],
+    observer: &mut dyn Observer,
+) -> Result<(SurfaceMeshed, Vec<Source>), SurfaceMeshError> {
     observer.stage(Stage::Background);
-    let plan = Plan::new(model, options)?;
-    let nodes = plan.nodes(model)?;
+    let plan = Plan::new(model, options, finer)?;
+    let rims = plan.rims(model)?;
     if let SurfaceMethod::Grid(method) = options.method {
-        return plan.grids(model, &nodes, (method, options.common.triangles_max), observer);
+        let limit = options.common.triangles_max;
+        return Ok((plan.grids(model, &rims, (method, limit), observer)?, Vec::new()));
     }
     if options.method == SurfaceMethod::Direct {
-        return plan.direct(model, &nodes, &options.common, observer);
+        return Ok((plan.direct(model, &rims, &options.common, observer)?, Vec::new()));
     }
-    let drafts = plan.drafts(model, &nodes)?;
+    let drafts = plan.drafts(model, &rims)?;
 
     observer.stage(Stage::Size);
     let limit = options.common.triangles_max;
@@ -235,12 +271,16 @@ pub fn mesh_model(
     observer.stage(Stage::Front);
     let mut weld = Weld::new(&plan.outline);
     let mut meshed = plan.nothing_yet(prediction);
-    for (i, (draft, predicted)) in drafts.into_iter().zip(predictions).enumerate() {
-        let done = weld.mesh.triangles.len();
-        // A triangle mesh has half as many vertices as triangles; the backstop is three times that.
-        let vertices_max = (1.5 * predicted) as usize + 1000;
-        let patch =
-            draft.mesh(&options.common, vertices_max, &mut |n| observer.progress(done + n))?;
+    let mut jobs: Vec<(Draft<'_>, f64)> = drafts.into_iter().zip(predictions).collect();
+    let mut patches = Vec::new();
+    while !jobs.is_empty() {
+        let some: Vec<_> = jobs.drain(..jobs.len().min(AT_ONCE)).collect();
+        let done: usize =
+            patches.iter().map(|patch: &PatchMesh| patch.mesh.triangles().count()).sum();
+        patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
+    }
+    let excess = plan.excess(&patches);
+    for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
         meshed.front.accepted_existing += patch.stats.accepted_existing;
         meshed.front.inserted += patch.stats.inserted;
@@ -248,11 +288,40 @@ pub fn mesh_model(
         meshed.improved[0] += patch.flips;
         meshed.improved[1] += patch.moves;
         let of = &model.patches[piece.patch];
-        weld.add(i as u32, (of.marker, &of.name), &nodes[i], &patch)?;
+        weld.add(i as u32, (of.marker, &of.name), &rims[i], &patch)?;
     }
     observer.stage(Stage::Collect);
-    meshed.mesh = weld.finish(model, &plan.outline);
-    Ok(meshed)
+    (meshed.mesh, meshed.parameters) = weld.finish(model, &plan.outline, &rims);
+    Ok((meshed, excess))
+}
+
+/// Patches that are meshed at the same time; between such groups the observer is asked whether to
+/// go on.
+const AT_ONCE: usize = 16;
+
+/// Meshes some patches, each for itself: no patch depends on another, so that the number of threads
+/// changes nothing.
+fn mesh_some(
+    mut jobs: Vec<(Draft<'_>, f64)>,
+    options: &Options,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<Vec<PatchMesh>, SurfaceMeshError> {
+    // A triangle mesh has half as many vertices as triangles; the backstop is three times that.
+    let vertices_max = |predicted: f64| (1.5 * predicted) as usize + 1000;
+    if jobs.len() == 1 {
+        let (draft, predicted) = jobs.remove(0);
+        return Ok(vec![draft.mesh(options, vertices_max(predicted), progress)?]);
+    }
+    let mesh = |(draft, predicted): (Draft<'_>, f64)| {
+        draft.mesh(options, vertices_max(predicted), &mut |_| true)
+    };
+    let patches: Vec<Result<PatchMesh, SurfaceMeshError>> =
+        jobs.into_par_iter().map(mesh).collect();
+    let patches = patches.into_iter().collect::<Result<Vec<_>, _>>()?;
+    match progress(patches.iter().map(|patch| patch.mesh.triangles().count()).sum()) {
+        true => Ok(patches),
+        false => Err(FrontError::Stopped.into()),
+    }
 }
 
 /// Predicted triangles of each patch.
@@ -275,18 +344,24 @@ struct Plan {
     outline: Outline,
     field: SpaceField,
     curvature: Curvature,
+    /// How far off is rounding.
+    tolerance: f64,
 }
 
 impl Plan {
-    fn new(model: &Model, options: &SurfaceOptions) -> Result<Self, SurfaceMeshError> {
+    fn new(
+        model: &Model,
+        options: &SurfaceOptions,
+        finer: &[Source],
+    ) -> Result<Self, SurfaceMeshError> {
         let mut outline = Outline::new(model)?;
         if outline.pieces.is_empty() {
             return Err(SurfaceMeshError::Empty);
         }
         let diagonal = model.diagonal();
         let curvature = Curvature {
-            chord_error: options.chord_error,
-            angle: options.angle_per_edge_deg.map(f64::to_radians),
+            chord_error: options.chord_error.or(model.chord_error),
+            angle: options.angle_per_edge_deg.or(model.angle_per_edge_deg).map(f64::to_radians),
             floor: CURVATURE_FLOOR * diagonal,
         };
         let given = options.common.spacing.or(model.spacing);
@@ -297,21 +372,23 @@ impl Plan {
         let mut sources = Vec::new();
         if curvature.is_on() {
             sources = samples(&outline, &curvature);
+            sources.extend(finer);
             let field = SpaceField::new(&sources, growth, spacing);
             outline.cut(|jet| curvature.along(jet).min(field.at(jet.point)))?;
         } else {
             outline.cut(|_| spacing)?;
         }
-        outline.number();
+        outline.number(ROUNDING * diagonal);
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
-        Ok(Self { outline, field, curvature })
+        Ok(Self { outline, field, curvature, tolerance: ROUNDING * diagonal })
     }
 
     /// What is told of a run before its first triangle.
     fn nothing_yet(&self, prediction: Prediction) -> SurfaceMeshed {
         SurfaceMeshed {
             mesh: MeshData::default(),
+            parameters: Vec::new(),
             prediction,
             patches: self.outline.pieces.len(),
             curves: self.outline.curves.iter().filter(|shared| shared.uses > 0).count(),
@@ -325,12 +402,12 @@ impl Plan {
     fn grids(
         &self,
         model: &Model,
-        nodes: &[Vec<Node>],
+        rims: &[Rim],
         (method, limit): (GridMethod, usize),
         observer: &mut dyn Observer,
     ) -> Result<SurfaceMeshed, SurfaceMeshError> {
         observer.stage(Stage::Size);
-        let quarters = Quarters::all(self, model, nodes)?;
+        let quarters = Quarters::all(self, model, rims)?;
         let triangles = quarters.iter().map(|q| q.triangles() as f64).sum();
         if triangles > limit as f64 {
             return Err(SurfaceMeshError::TooMany { predicted: triangles, stopped: false, limit });
@@ -346,17 +423,30 @@ impl Plan {
             meshed.grids.push(quarter.lay(method, &mut weld)?);
         }
         observer.stage(Stage::Collect);
-        meshed.mesh = weld.finish(model, &self.outline);
+        (meshed.mesh, meshed.parameters) = weld.finish(model, &self.outline, rims);
         Ok(meshed)
     }
 
-    fn nodes(&self, model: &Model) -> Result<Vec<Vec<Node>>, SurfaceMeshError> {
+    /// Where the patches leave their surfaces too far.
+    fn excess(&self, patches: &[PatchMesh]) -> Vec<Source> {
+        let Some(limit) = self.curvature.chord_error else { return Vec::new() };
+        let floor = self.curvature.floor;
+        let of = |(i, patch): (usize, &PatchMesh)| {
+            excess::excess(&self.outline.pieces[i].surface, patch, limit, floor)
+        };
+        let lists: Vec<Vec<Source>> = patches.par_iter().enumerate().map(of).collect();
+        lists.concat()
+    }
+
+    fn rims(&self, model: &Model) -> Result<Vec<Rim>, SurfaceMeshError> {
         let around = |piece: &outline::Piece| {
-            let nodes = self.outline.around(piece);
-            let name = &model.patches[piece.patch].name;
-            match nodes.iter().any(|node| node.vertex == u32::MAX) {
-                true => Err(SurfaceMeshError::Flat { name: name.clone() }),
-                false => Ok(nodes),
+            let name = model.patches[piece.patch].name.clone();
+            match self.outline.rim(piece, self.tolerance) {
+                Err(reason) => Err(SurfaceMeshError::Trim { name, reason }),
+                Ok(rim) if rim.nodes.iter().any(|node| node.vertex == u32::MAX) => {
+                    Err(SurfaceMeshError::Flat { name })
+                }
+                Ok(rim) => Ok(rim),
             }
         };
         self.outline.pieces.iter().map(around).collect()
@@ -370,16 +460,12 @@ impl Plan {
         }
     }
 
-    fn drafts(
-        &self,
-        model: &Model,
-        nodes: &[Vec<Node>],
-    ) -> Result<Vec<Draft<'_>>, SurfaceMeshError> {
-        let draft = |(i, nodes): (usize, &Vec<Node>)| {
+    fn drafts(&self, model: &Model, rims: &[Rim]) -> Result<Vec<Draft<'_>>, SurfaceMeshError> {
+        let draft = |(i, rim): (usize, &Rim)| {
             let name = &model.patches[self.outline.pieces[i].patch].name;
-            Draft::new(self.chart(i), nodes, &self.outline.points, name)
+            Draft::new(self.chart(i), rim, &self.outline.points, name)
         };
-        nodes.iter().enumerate().map(draft).collect()
+        rims.iter().enumerate().map(draft).collect()
     }
 }
 

@@ -136,6 +136,12 @@ fn torture() {
     run(TARGETS[6]);
 }
 
+// spec: X63
+#[test]
+fn model_files() {
+    run(TARGETS[7]);
+}
+
 #[test]
 #[should_panic(expected = "fails on this input")]
 fn a_fault_is_not_swallowed() {

@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use trigrade::check::surface::{SurfaceLimits, SurfaceReport, against_model};
-use trigrade::check::{CheckOptions, Dimension, Metric, Report, check};
+use trigrade::check::{CheckOptions, Dimension, Id, Metric, Report, check};
 use trigrade::curve::Curve;
 use trigrade::curve::discretize::Rule;
-use trigrade::format::model_json;
+use trigrade::format::{
+    Encoding, MeshForm, MeshView, ReadOptions, WriteOptions, model_json, read_mesh, write_mesh,
+};
 use trigrade::mesh::MeshData;
 use trigrade::mesher::{Options, Unobserved};
 use trigrade::model::{Model, ModelCurve, Patch};
@@ -60,13 +62,14 @@ fn run(model: &Model, options: &SurfaceOptions) -> Result<SurfaceMeshed, Surface
     mesh_model(model, options, &mut Unobserved)
 }
 
-fn in_space(mesh: &MeshData) -> Report {
-    check(mesh, None, &CheckOptions::new().dimension(Dimension::Space))
+fn in_space(mesh: &MeshData, model: &Model) -> Report {
+    let options = CheckOptions::new().dimension(Dimension::Space);
+    check(mesh, None, &options.crossing_parts(model.parts_may_cross))
 }
 
 /// Both checks pass; R/2r mean and largest are within the bounds.
 fn assert_sound(name: &str, model: &Model, mesh: &MeshData, bounds: [f64; 2]) -> SurfaceReport {
-    let report = in_space(mesh);
+    let report = in_space(mesh, model);
     assert!(report.passed(), "{name}: {:?}", report.findings.first());
     let surface = against_model(mesh, model, &SurfaceLimits::default());
     assert_eq!(surface.findings, [], "{name}");
@@ -83,7 +86,10 @@ fn the_examples_are_meshed_watertight_and_well_shaped() {
     let mut names = Vec::new();
     for (name, model) in examples() {
         let meshed = run(&model, &SurfaceOptions::default()).expect("a mesh");
-        let bounds = if name == "two_coons" { [1.06, 2.2] } else { [1.03, 1.9] };
+        let bounds = match name.as_str() {
+            "two_coons" | "teapot" => [1.06, 2.2],
+            _ => [1.03, 1.9],
+        };
         let surface = assert_sound(&name, &model, &meshed.mesh, bounds);
         let closed = ["pot", "sphere", "torus"].contains(&name.as_str());
         assert_eq!(surface.boundary_edges == 0, closed, "{name}");
@@ -93,12 +99,66 @@ fn the_examples_are_meshed_watertight_and_well_shaped() {
         ("pot", 2),
         ("roof", 1),
         ("sphere", 2),
+        ("teapot", 1),
         ("torus", 0),
+        ("trimmed", 0),
         ("two_coons", 1),
         ("vase", 1),
         ("wave", 1),
     ];
     assert_eq!(names, expected.map(|(name, euler)| (name.to_owned(), euler)));
+}
+
+// spec: S6 S22
+#[test]
+fn the_teapot_is_four_parts_that_cross_each_other() {
+    let (_, model) = examples().into_iter().find(|(name, _)| name == "teapot").expect("there");
+    assert_eq!(model.patches.len(), 32);
+    let meshed = run(&model, &SurfaceOptions::default()).expect("a mesh");
+    let report = in_space(&meshed.mesh, &model);
+    assert!(report.passed(), "{:?}", report.findings.first());
+    assert_eq!(report.statistics.components, 4, "body, handle, spout and lid");
+    let strict = check(&meshed.mesh, None, &CheckOptions::new());
+    assert_eq!(
+        strict.ids(),
+        [Id::BowTie, Id::SelfIntersection],
+        "handle and spout run into the body"
+    );
+}
+
+// spec: S23
+#[test]
+fn points_know_their_parameters_and_vtk_files_carry_them() {
+    let model = model(vec![sphere()], 0.4);
+    let meshed = run(&model, &SurfaceOptions::default()).expect("a mesh");
+    assert_eq!(meshed.parameters.len(), meshed.mesh.points.len());
+    let pieces = model.patches[0].surface.pieces();
+    for (&[u, v], &p) in meshed.parameters.iter().zip(&meshed.mesh.points) {
+        let off = |piece: &Surface| trigrade::vector::distance(piece.at(u, v), p);
+        assert!(pieces.iter().any(|piece| off(piece) < 1e-12), "({u}, {v}) for {p:?}");
+    }
+    let plain = MeshView::from(&meshed.mesh);
+    let view = plain.with_parameters(&meshed.parameters);
+    for (form, encoding) in [
+        (MeshForm::Vtu, Encoding::Ascii),
+        (MeshForm::Vtu, Encoding::Compressed),
+        (MeshForm::VtkLegacy, Encoding::Ascii),
+        (MeshForm::VtkLegacy, Encoding::Binary),
+    ] {
+        let mut bytes = Vec::new();
+        let options = WriteOptions { encoding, ..WriteOptions::default() };
+        write_mesh(view, form, options, &mut bytes).expect("written");
+        let mut without = Vec::new();
+        write_mesh(plain, form, options, &mut without).expect("written");
+        let named = bytes.windows(2).any(|word| word == b"uv");
+        assert!(named && bytes.len() > without.len(), "{form:?} {encoding:?}");
+        let back = read_mesh(&bytes, form, &ReadOptions::default()).expect("read back");
+        assert_eq!((&back.points, &back.triangles), (&meshed.mesh.points, &meshed.mesh.triangles));
+    }
+    assert!(
+        plain.with_parameters(&meshed.parameters[1..]).parameters().is_empty(),
+        "one each, or none"
+    );
 }
 
 // spec: S6
@@ -118,7 +178,7 @@ fn patches_that_share_a_curve_share_its_vertices() {
     assert_eq!((meshed.patches, meshed.curves), (2, 7));
     let count = |marker| meshed.mesh.edges.iter().filter(|e| e.marker == marker).count();
     assert_eq!((count(1), count(2)), (20, 20), "the counts of the file are kept");
-    let report = in_space(&meshed.mesh);
+    let report = in_space(&meshed.mesh, &model);
     assert_eq!(report.statistics.boundary_edges, 40 + 4 * 16);
 }
 
@@ -136,7 +196,7 @@ fn a_closed_model_faces_outwards() {
 
 // spec: S6
 #[test]
-fn the_chord_error_asked_for_is_kept_but_beside_poles() {
+fn the_chord_error_asked_for_is_nearly_kept_beside_poles_too() {
     let one = Model { spacing: None, ..model(vec![sphere()], 1.0) };
     for error in [1e-2, 1e-3] {
         let options = SurfaceOptions { chord_error: Some(error), ..SurfaceOptions::default() };
@@ -149,8 +209,8 @@ fn the_chord_error_asked_for_is_kept_but_beside_poles() {
         });
         let worst = middles.fold(0.0, f64::max);
         assert!(worst <= surface.chord_error + 1e-12, "{worst} {}", surface.chord_error);
-        // Beside the poles edges are too long: by up to 1.8 times.
-        assert!(surface.chord_error <= 3.5 * error, "{} for {error}", surface.chord_error);
+        // A few rounds come near it: triangles between two finer ones are seen last.
+        assert!(surface.chord_error <= 1.25 * error, "{} for {error}", surface.chord_error);
     }
 }
 
@@ -266,7 +326,7 @@ fn the_check_against_a_model_finds_what_is_wrong() {
     let one = model(vec![sphere()], 0.25);
     let sound = run(&one, &SurfaceOptions::default()).expect("a mesh").mesh;
     let ids = |mesh: &MeshData, limits: SurfaceLimits| -> Vec<&'static str> {
-        against_model(mesh, &one, &limits).findings.iter().map(|f| f.id).collect()
+        against_model(mesh, &one, &limits).counts.iter().map(|c| c.id.code()).collect()
     };
     let none = SurfaceLimits::default();
     assert_eq!(ids(&sound, none), [""; 0]);

@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use trigrade::curve::{Curve, CurveError};
+use trigrade::format::nurbs_json;
 use trigrade::metric::{FirstForm, normal, principal_curvatures};
 use trigrade::surface::{Coons, Revolution, Side, Surface, SurfaceError, Tensor};
 use trigrade::vector::{Vector, distance, norm, scale, sub};
@@ -276,22 +277,11 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 fn surface_of(value: &Value) -> Surface {
-    let net: Vec<Vec<Vec<f64>>> = value["control_points"]
-        .as_array()
-        .expect("rows")
-        .iter()
-        .map(|row| row.as_array().expect("a row").iter().map(numbers).collect())
-        .collect();
-    let rows: Vec<Vec<Vector>> =
-        net.iter().map(|row| row.iter().map(|p| [p[0], p[1], p[2]]).collect()).collect();
-    let weights: Vec<Vec<f64>> = net.iter().map(|row| row.iter().map(|p| p[3]).collect()).collect();
-    let degree = |key: &str| value[key].as_u64().expect("a degree") as usize;
-    let knots = [numbers(&value["knots_u"]), numbers(&value["knots_v"])];
-    let degrees = [degree("degree_u"), degree("degree_v")];
-    Surface::Tensor(Tensor::new(degrees, knots, &rows, &weights).expect("a sound surface"))
+    let model = nurbs_json::read(value.to_string().as_bytes()).expect("a sound surface");
+    model.patches[0].surface.clone()
 }
 
-// spec: S3
+// spec: S3 X61
 #[test]
 fn the_reference_samples_and_areas_are_met() {
     for (name, value) in references() {

@@ -6,6 +6,7 @@ pub mod decode;
 pub mod domain_parsers;
 pub mod exact;
 pub mod mesh_readers;
+pub mod model_files;
 pub mod pipeline;
 pub mod point_files;
 pub mod predicates;
@@ -15,7 +16,7 @@ pub mod torture;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     ("predicates", predicates::run),
     ("domain_parsers", domain_parsers::run),
     ("mesh_readers", mesh_readers::run),
@@ -23,4 +24,5 @@ pub const TARGETS: [Target; 7] = [
     ("pipeline", pipeline::run),
     ("point_files", point_files::run),
     ("torture", torture::run),
+    ("model_files", model_files::run),
 ];

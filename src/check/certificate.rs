@@ -6,6 +6,7 @@
 //! bytes and checking them anew.
 
 use super::report::{IdCount, NotChecked, Report, Verdict};
+use super::surface::SurfaceLimits;
 use super::{CheckOptions, Id};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -40,6 +41,16 @@ impl FileHash {
     }
 }
 
+/// The surface model that a mesh was checked against, and what was demanded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CertifiedModel {
+    /// The model.
+    pub file: FileHash,
+    /// Limits of the distances and normals.
+    pub limits: SurfaceLimits,
+}
+
 /// What a check said of certain bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,6 +63,9 @@ pub struct Certificate {
     pub mesh: FileHash,
     /// The domain, if the mesh was checked against one.
     pub domain: Option<FileHash>,
+    /// The surface model, if the mesh was checked against one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub surface: Option<CertifiedModel>,
     /// The answer.
     pub verdict: Verdict,
     /// Ids whose check ran to its end.
@@ -79,7 +93,7 @@ pub enum CertificateError {
     /// It speaks of other files.
     #[error("the {what} is another file than the one certified: SHA-256 {found}, not {certified}")]
     OtherFile {
-        /// Mesh or domain.
+        /// Mesh, domain or model.
         what: &'static str,
         /// Of the file given.
         found: String,
@@ -89,6 +103,9 @@ pub enum CertificateError {
     /// With a domain or without.
     #[error("the certificate was made {0} a domain: check the mesh the same way")]
     Domain(&'static str),
+    /// With a surface model or without.
+    #[error("the certificate was made {0} a surface model: check the mesh the same way")]
+    Model(&'static str),
     /// The files are the same and the check says something else.
     #[error("the check does not confirm the certificate's {0}")]
     Differs(&'static str),
@@ -108,6 +125,7 @@ impl Certificate {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             mesh,
             domain,
+            surface: None,
             verdict: report.verdict,
             checked: report.checked.clone(),
             not_checked: report.not_checked.clone(),
@@ -117,6 +135,13 @@ impl Certificate {
             triangles: report.statistics.triangles,
             area: report.statistics.area.as_ref().map(|area| area.exact.clone()),
         }
+    }
+
+    /// Names the surface model that the report is about too.
+    #[must_use]
+    pub fn on_model(mut self, file: FileHash, limits: SurfaceLimits) -> Self {
+        self.surface = Some(CertifiedModel { file, limits });
+        self
     }
 
     /// Reads the JSON that serialising a certificate gives.
@@ -156,6 +181,12 @@ impl Certificate {
             (None, None) => {}
             (Some(_), None) => return Err(CertificateError::Domain("with")),
             (None, Some(_)) => return Err(CertificateError::Domain("without")),
+        }
+        match (&self.surface, &fresh.surface) {
+            (Some(certified), Some(found)) => same_file("model", &certified.file, &found.file)?,
+            (None, None) => {}
+            (Some(_), None) => return Err(CertificateError::Model("with")),
+            (None, Some(_)) => return Err(CertificateError::Model("without")),
         }
         let same = |holds, what| if holds { Ok(()) } else { Err(CertificateError::Differs(what)) };
         same(self.verdict == fresh.verdict, "verdict")?;

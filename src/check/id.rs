@@ -88,6 +88,18 @@ pub enum Id {
     /// A surface intersects itself.
     #[serde(rename = "M27")]
     SelfIntersection,
+    /// A triangle is too far from the surface of the model, or faces too far away from it.
+    #[serde(rename = "S8")]
+    SurfaceDeviation,
+    /// A triangle faces against the others of its patch.
+    #[serde(rename = "S9")]
+    SurfaceFold,
+    /// The Euler number is not the model's.
+    #[serde(rename = "S10")]
+    SurfaceEuler,
+    /// The mesh does not end where the model ends.
+    #[serde(rename = "S11")]
+    SurfaceBoundary,
     /// A quality gate is missed.
     #[serde(rename = "Q1")]
     GateMissed,
@@ -100,12 +112,13 @@ use Id::{
     BadReference, BaselineMissed, BoundaryLost, BowTie, Clockwise, ConstraintLost, Deviation,
     DuplicateTriangle, DuplicateVertex, Empty, GateMissed, HangingNode, Inverted, MarkedEdge,
     MixedOrientation, NonManifoldEdge, NotClosed, NotConstrainedDelaunay, NotDelaunay, NotFinite,
-    Outside, Overlap, PointLost, RepeatedVertex, SelfIntersection, SurfaceOrientation, Uncovered,
-    UnusedVertex, ZeroArea,
+    Outside, Overlap, PointLost, RepeatedVertex, SelfIntersection, SurfaceBoundary,
+    SurfaceDeviation, SurfaceEuler, SurfaceFold, SurfaceOrientation, Uncovered, UnusedVertex,
+    ZeroArea,
 };
 
 /// `(id, SPEC id, slug, rule)` of every id, in order.
-const TABLE: [(Id, &str, &str, &str); 29] = [
+const TABLE: [(Id, &str, &str, &str); 33] = [
     (Empty, "M1", "empty-mesh", "a mesh has at least one triangle"),
     (BadReference, "M2", "bad-reference", "every corner of a triangle names a point of the mesh"),
     (
@@ -157,6 +170,20 @@ const TABLE: [(Id, &str, &str, &str); 29] = [
         "M27",
         "self-intersection",
         "triangles of a surface meet in a common vertex or edge only",
+    ),
+    (
+        SurfaceDeviation,
+        "S8",
+        "surface-deviation",
+        "vertices lie on the model's surface, triangles as near to it as demanded",
+    ),
+    (SurfaceFold, "S9", "surface-fold", "all triangles of a patch face the same side"),
+    (SurfaceEuler, "S10", "surface-euler", "the mesh has the Euler number of the model"),
+    (
+        SurfaceBoundary,
+        "S11",
+        "surface-boundary",
+        "the mesh ends where the model ends, and has its corners",
     ),
     (GateMissed, "Q1", "gate-missed", "every quality gate holds"),
     (BaselineMissed, "Q2", "baseline-missed", "no metric is worse than in the baseline"),

@@ -260,6 +260,7 @@ impl<'a> Run<'a> {
     }
 
     fn finish(mut self) -> Report {
+        self.skip(&super::surface::SURFACE_IDS, "no surface model was given");
         let gates = self.judge_gates();
         self.judge_baseline();
         let allowed = |id: Id| self.options.allow.contains(&id);

@@ -50,8 +50,9 @@ pub(super) fn check(run: &mut Run<'_>) {
     topology::report_crowded_edges(&sound, &edges, &mut run.out);
     topology::report_marked_edges(&sound, &mut run.out);
     report_orientation(&sound, &edges, &mut run.out);
-    report_pinches(&sound, &edges, &mut run.out);
     let parts = topology::survey(&sound, &edges);
+    let apart = run.options.crossing_parts.then_some(&parts);
+    report_pinches(&sound, &edges, apart, &mut run.out);
     parts.describe(&edges, &mut run.statistics);
     if run.options.closed && run.statistics.boundary_edges > 0 {
         let (count, loops) = (run.statistics.boundary_edges, run.statistics.boundary_loops);
@@ -59,7 +60,10 @@ pub(super) fn check(run: &mut Run<'_>) {
         let ends = edges.chain.iter().take(8).flat_map(|e| [e.from, e.to]);
         run.out.add(Id::NotClosed, || Draft::new(Id::NotClosed, text).vertices(ends));
     }
-    let (tests, pairs) = join::intersecting_pairs(&space, &sound.triangles, &flat);
+    let (tests, mut pairs) = join::intersecting_pairs(&space, &sound.triangles, &flat);
+    if run.options.crossing_parts {
+        pairs.retain(|&pair| parts.are_one(pair));
+    }
     run.statistics.intersection_tests = Some(tests);
     report_intersections(&sound, &edges, (&pairs, &flat), &mut run.out);
     report_unused(run, &sound, &BTreeSet::new());
@@ -189,15 +193,21 @@ fn report_part(sound: &Sound<'_>, part: &SidedPart, sides: &[i8], out: &mut Coll
     });
 }
 
-/// Reports M13: vertices whose triangles are more than one fan.
-fn report_pinches(sound: &Sound<'_>, edges: &Edges, out: &mut Collector<'_>) {
+/// Reports M13: vertices whose triangles are more than one fan; fans of different parts may meet
+/// where `apart` says what the parts are.
+fn report_pinches(
+    sound: &Sound<'_>,
+    edges: &Edges,
+    apart: Option<&topology::Parts>,
+    out: &mut Collector<'_>,
+) {
     let explained: BTreeSet<u32> = edges
         .irregular
         .iter()
         .flat_map(|e| e.vertices)
         .chain(sound.dropped.iter().flatten().copied())
         .collect();
-    let fans = count_fans(sound, edges);
+    let fans = count_fans(sound, edges, apart);
     for (v, &count) in
         (0u32..).zip(&fans).filter(|(v, count)| **count > 1 && !explained.contains(v))
     {
@@ -215,7 +225,7 @@ fn report_pinches(sound: &Sound<'_>, edges: &Edges, out: &mut Collector<'_>) {
 ///
 /// Corner h of a triangle is the start of half-edge h. The next corner counterclockwise around the
 /// vertex starts the twin of the edge that arrives there.
-fn count_fans(sound: &Sound<'_>, edges: &Edges) -> Vec<u32> {
+fn count_fans(sound: &Sound<'_>, edges: &Edges, apart: Option<&topology::Parts>) -> Vec<u32> {
     let arriving = |h: u32| h - h % 3 + (h + 2) % 3;
     let leaving = |h: u32| h - h % 3 + (h + 1) % 3;
     let ahead = |h: u32| edges.twin[arriving(h) as usize];
@@ -226,11 +236,17 @@ fn count_fans(sound: &Sound<'_>, edges: &Edges) -> Vec<u32> {
     let corners = 3 * sound.triangles.len() as u32;
     let mut seen = vec![false; corners as usize];
     let mut fans = vec![0u32; sound.mesh.points.len()];
+    let mut seen_in = BTreeSet::new();
     for start in 0..corners {
         if seen[start as usize] {
             continue;
         }
-        fans[sound.triangles[(start / 3) as usize][(start % 3) as usize] as usize] += 1;
+        let v = sound.triangles[(start / 3) as usize][(start % 3) as usize];
+        let mut is_new = |parts: &topology::Parts| seen_in.insert((v, parts.of(start / 3)));
+        let is_apart = apart.is_some_and(&mut is_new);
+        if fans[v as usize] == 0 || !is_apart {
+            fans[v as usize] += 1;
+        }
         for step in [&ahead as &dyn Fn(u32) -> u32, &behind] {
             let mut h = start;
             while h != NONE && (h == start || !seen[h as usize]) {

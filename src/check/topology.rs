@@ -121,6 +121,18 @@ pub(super) struct Parts {
     triangles: u64,
 }
 
+impl Parts {
+    /// The part of a triangle.
+    pub(super) fn of(&self, t: u32) -> u32 {
+        self.of_triangle.as_ref().map_or(0, |labels| labels[t as usize])
+    }
+
+    /// Whether two triangles hang together.
+    pub(super) fn are_one(&self, [a, b]: [u32; 2]) -> bool {
+        self.of(a) == self.of(b)
+    }
+}
+
 /// Counts parts, vertices and boundary loops.
 pub(super) fn survey(sound: &Sound<'_>, edges: &Edges) -> Parts {
     let triangles = sound.triangles.len();

@@ -16,27 +16,12 @@ impl<T: Copy> Tree<T> {
         Self { items }
     }
 
-    /// Diagonal of the box around all points.
-    pub(super) fn diagonal(&self) -> f64 {
-        let size = extent(&self.items);
-        if self.items.is_empty() { 0.0 } else { norm_sq(size).sqrt() }
-    }
-
     /// At most `count` points nearest to `p`, nearest first, with their squared distances.
     pub(super) fn nearest(&self, p: Vector, count: usize) -> Vec<(f64, T)> {
         let mut best = Vec::with_capacity(count + 1);
         search(&self.items, 0, &Query { p, count }, &mut best);
         best
     }
-}
-
-fn extent<T>(items: &[(Vector, T)]) -> Vector {
-    std::array::from_fn(|i| {
-        let all = items.iter().map(|(p, _)| p[i]);
-        let (low, high) = all
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        high - low
-    })
 }
 
 /// The range is split along x, y and z in turn.
@@ -105,6 +90,5 @@ mod tests {
     fn an_empty_tree_has_no_nearest_point() {
         let tree: Tree<u32> = Tree::new(Vec::new());
         assert!(tree.nearest([0.0; 3], 3).is_empty());
-        assert_eq!(tree.diagonal(), 0.0);
     }
 }

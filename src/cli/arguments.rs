@@ -108,7 +108,7 @@ Examples:
   trigrade mesh wing.poly --method afm --dry-run
   trigrade mesh vase.json --spacing 0.05 -o vase.stl -o vase.msh")]
 pub struct MeshArguments {
-    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json; `-` is
+    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json or .bpt; `-` is
     /// standard input.
     #[arg(value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
     pub domain: PathBuf,

@@ -16,8 +16,8 @@ use super::verdict;
 use super::watch::{Watch, stages};
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::size::{SizeFit, size_fit};
-use crate::check::surface::{SurfaceLimits, against_model};
-use crate::check::{Baseline, CheckOptions, Dimension, GateError, GateFile, Report, check};
+use crate::check::surface::{SurfaceLimits, check_on_model};
+use crate::check::{Baseline, CheckOptions, GateError, GateFile, Report, check};
 use crate::domain::Domain;
 use crate::draw;
 use crate::format::MeshView;
@@ -35,15 +35,15 @@ pub fn run(
     console: &Console,
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
-    let model = arguments.surface.as_deref().map(surface::load_model).transpose()?;
+    let model = arguments.surface.as_deref();
+    let model = model.map(|path| surface::load_model(path, None)).transpose()?;
     let certified = arguments.verify_certificate.as_deref().map(load_certificate).transpose()?;
-    let mut options = match &certified {
+    let options = match &certified {
         Some(certificate) => certificate.options(),
         None => options(arguments)?,
     };
-    if model.is_some() {
-        options.dimension = Dimension::Space;
-    }
+    let limits = certified.as_ref().and_then(|certificate| certificate.surface.as_ref());
+    let limits = limits.map_or_else(|| surface_limits(arguments), |surface| surface.limits);
     let side = SideFiles::prepare(arguments, cleanup)?;
     let mut watch = Watch::new(console);
     watch.begin("read");
@@ -51,9 +51,22 @@ pub fn run(
     let field = arguments.size.as_deref().map(load_node_data).transpose()?;
     watch.begin("check");
     let (mesh, name) = (&files.loaded.mesh, &files.loaded.name);
-    let report = check(mesh, files.domain(), &options);
+    let (report, found) = match &model {
+        None => (check(mesh, files.domain(), &options), None),
+        Some((_, model)) => {
+            let (report, found) = check_on_model(mesh, (model, &limits), files.domain(), &options);
+            (report, Some(found))
+        }
+    };
     let laps = watch.finish();
     let fresh = files.certificate(&report, &options);
+    let fresh = match &model {
+        Some((input, _)) => {
+            let file = FileHash::of(&input.name, &[&input.bytes]);
+            fresh.map(|fresh| fresh.on_model(file, limits))
+        }
+        None => fresh,
+    };
     let picture =
         Drawing { highlights: draw::highlights(&report), ..Drawing::of(mesh, name.clone()) };
     side.write(&report, fresh.as_ref(), &picture)?;
@@ -69,18 +82,20 @@ pub fn run(
     if arguments.timings {
         outcome.text.push_str(&format!("\n  {:<11}{}", "time", stages(&laps)));
     }
-    if let Some((_, model)) = &model {
-        let limits = SurfaceLimits {
-            chord_error: arguments.chord_error,
-            normal_deviation_deg: arguments.normal_deviation,
-        };
-        let found = against_model(&files.loaded.mesh, model, &limits);
-        surface::tell(&found, &files.loaded.name, &mut outcome);
+    if let Some(found) = &found {
+        surface::tell(found, &mut outcome);
     }
     if let (Some(certified), Some(fresh)) = (certified, fresh) {
         confirm(&certified, &fresh, &mut outcome);
     }
     Ok(outcome)
+}
+
+fn surface_limits(arguments: &CheckArguments) -> SurfaceLimits {
+    SurfaceLimits {
+        chord_error: arguments.chord_error,
+        normal_deviation_deg: arguments.normal_deviation,
+    }
 }
 
 /// Adds how well the edges fit a size field.

@@ -85,7 +85,8 @@ pub fn run(
         watch.begin("check");
         summary.check = Some(check_all(&meshes, &domain)?);
         if arguments.certificate.is_some() {
-            let certificate = certify(&outputs, &files, &input, summary.check.as_ref())?;
+            let checked = summary.check.as_ref().map(|(name, report)| (name, report));
+            let certificate = certify(&outputs, &files, checked, Some(&input))?;
             write_json(&mut outputs, files.len(), &certificate)?;
         }
     }
@@ -211,11 +212,11 @@ fn check_all(meshes: &[(String, MeshData)], domain: &Domain) -> Result<(String, 
 }
 
 /// The certificate of the mesh that was read back and checked.
-fn certify(
+pub(super) fn certify(
     outputs: &Outputs,
     files: &[OutputFile],
-    domain: &Input,
-    checked: Option<&(String, Report)>,
+    checked: Option<(&String, &Report)>,
+    domain: Option<&Input>,
 ) -> Result<Certificate, Failure> {
     let written = checked.and_then(|(name, report)| {
         let is_checked = |file: &OutputFile| {
@@ -233,8 +234,8 @@ fn certify(
     let parts: Vec<Vec<u8>> = parts.collect::<Result<_, _>>()?;
     let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
     let mesh = FileHash::of(name, &parts);
-    let domain = FileHash::of(&domain.name, &[&domain.bytes]);
-    Ok(Certificate::new(report, &CheckOptions::default(), mesh, Some(domain)))
+    let domain = domain.map(|domain| FileHash::of(&domain.name, &[&domain.bytes]));
+    Ok(Certificate::new(report, &CheckOptions::default(), mesh, domain))
 }
 
 /// A mesh this near to its target has reached it.

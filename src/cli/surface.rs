@@ -1,20 +1,23 @@
 //! `trigrade mesh` on a surface model, and `trigrade check --surface`.
 
 use super::arguments::{MeshArguments, Method};
+use super::check::write_json;
 use super::console::Console;
 use super::domain_file::malformed;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, output_files};
 use super::input::{Input, is_dash, load};
-use super::mesh::{count, paths, read_back};
+use super::mesh::{certify, count, paths, read_back};
 use super::mesh_file::{self, Drawing};
 use super::outcome::{Checked, Outcome, file_names, output_names};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
 use super::watch::{Watch, seconds, stages, time, total};
-use crate::check::surface::{SurfaceLimits, SurfaceReport, against_model};
-use crate::check::{CheckOptions, Dimension, Report, check};
-use crate::format::{MeshView, model_json};
+use crate::check::certificate::FileHash;
+use crate::check::surface::{SurfaceLimits, SurfaceReport, check_on_model};
+use crate::check::{CheckOptions, Report};
+use crate::format::MeshView;
+use crate::format::model_file::{ModelForm, read_model};
 use crate::mesh::MeshData;
 use crate::mesher::Observer;
 use crate::model::Model;
@@ -24,6 +27,7 @@ use crate::surface_mesher::{
     SurfaceMeshError, SurfaceMeshed, SurfaceMethod, SurfaceOptions, mesh_model,
 };
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -34,10 +38,11 @@ use std::time::Duration;
 /// Exit code 2: the file cannot be read.
 pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     let path = &arguments.domain;
+    let is_one = |e: &OsStr| ["json", "bpt"].iter().any(|known| e.eq_ignore_ascii_case(known));
     match arguments.reading.from.as_deref() {
-        Some(form) => Ok(form == "model"),
-        None if is_dash(path) || path.extension().is_none_or(|e| e != "json") => Ok(false),
-        None => Ok(model_json::is_model(&load(path)?.bytes)),
+        Some(form) => Ok(ModelForm::from_name(form).is_some()),
+        None if is_dash(path) || !path.extension().is_some_and(is_one) => Ok(false),
+        None => Ok(ModelForm::of(path, &load(path)?.bytes).is_some()),
     }
 }
 
@@ -45,9 +50,14 @@ pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
 ///
 /// # Errors
 /// Exit code 2: the file cannot be read or is malformed.
-pub fn load_model(path: &Path) -> Result<(Input, Model), Failure> {
+pub fn load_model(path: &Path, form: Option<&str>) -> Result<(Input, Model), Failure> {
     let input = load(path)?;
-    let model = model_json::read(&input.bytes).map_err(|error| malformed(&input.name, &error))?;
+    let form = match form {
+        Some(name) => ModelForm::from_name(name),
+        None => ModelForm::of(path, &input.bytes),
+    };
+    let form = form.unwrap_or(ModelForm::Json);
+    let model = read_model(&input.bytes, form).map_err(|error| malformed(&input.name, &error))?;
     Ok((input, model))
 }
 
@@ -62,35 +72,43 @@ pub fn run(
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
-    refuse_certificate(arguments)?;
     watch.begin("read");
-    let (input, model) = load_model(&arguments.domain)?;
+    let (input, model) = load_model(&arguments.domain, arguments.reading.from.as_deref())?;
     let options = SurfaceOptions {
         common: arguments.options.options(),
         chord_error: arguments.on_surface.chord_error,
         angle_per_edge_deg: arguments.on_surface.angle_per_edge,
         method: method(arguments)?,
     };
-    let mut outputs = Outputs::prepare(&paths(&files), cleanup)?;
+    let mut targets = paths(&files);
+    targets.extend(arguments.certificate.clone());
+    let mut outputs = Outputs::prepare(&targets, cleanup)?;
     let mut summary =
-        Summary { name: input.name, patches: model.patches.len(), ..Summary::default() };
+        Summary { name: input.name.clone(), patches: model.patches.len(), ..Summary::default() };
     if arguments.dry_run {
         summary.prediction = Some(predict(&model, &options)?);
         return Ok(summary.outcome(&watch.finish(), arguments.timings));
     }
     let meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     watch.begin("write");
-    write_all(&mut outputs, &files, &meshed.mesh)?;
+    write_all(&mut outputs, &files, &meshed)?;
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
         watch.begin("check");
-        summary.check = Some(check_all(&meshes, &model));
+        let limits = SurfaceLimits::default();
+        let verdict = check_all(&meshes, (&model, &limits));
+        if arguments.certificate.is_some() {
+            let plain = certify(&outputs, &files, Some((&verdict.name, &verdict.report)), None)?;
+            let file = FileHash::of(&input.name, &[&input.bytes]);
+            write_json(&mut outputs, files.len(), &plain.on_model(file, limits))?;
+        }
+        summary.check = Some(verdict);
     }
     summary.meshed = Some(meshed);
     if summary.exit() == EXIT_HOLDS {
         outputs.commit()?;
-        summary.written = paths(&files);
+        summary.written = targets;
     }
     let laps = watch.finish();
     Ok(summary.outcome(&laps, arguments.timings))
@@ -108,16 +126,6 @@ fn method(arguments: &MeshArguments) -> Result<SurfaceMethod, Failure> {
         Method::DirectSurface => SurfaceMethod::Direct,
         _ => SurfaceMethod::Front,
     })
-}
-
-fn refuse_certificate(arguments: &MeshArguments) -> Result<(), Failure> {
-    match &arguments.certificate {
-        None => Ok(()),
-        Some(path) => {
-            let message = "there are no certificates for meshes of surface models yet";
-            Err(Failure::cannot_run(Diagnostic::new(message).at(path.display())))
-        }
-    }
 }
 
 /// Stops the mesher as soon as it has predicted the number of triangles.
@@ -150,6 +158,7 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
         | SurfaceMeshError::Curve { .. }
         | SurfaceMeshError::Grid(_)
         | SurfaceMeshError::Outline { .. }
+        | SurfaceMeshError::Trim { .. }
         | SurfaceMeshError::Flat { .. } => Failure::findings(vec![diagnostic]),
         SurfaceMeshError::Coarse { .. }
         | SurfaceMeshError::Stuck { .. }
@@ -159,10 +168,15 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
     }
 }
 
-fn write_all(outputs: &mut Outputs, files: &[OutputFile], mesh: &MeshData) -> Result<(), Failure> {
-    let drawing = Drawing::of(mesh, "");
+fn write_all(
+    outputs: &mut Outputs,
+    files: &[OutputFile],
+    meshed: &SurfaceMeshed,
+) -> Result<(), Failure> {
+    let drawing = Drawing::of(&meshed.mesh, "");
+    let view = MeshView::from(&meshed.mesh).with_parameters(&meshed.parameters);
     for (i, file) in files.iter().enumerate() {
-        mesh_file::write(outputs, i, file, MeshView::from(mesh), &drawing)?;
+        mesh_file::write(outputs, i, file, view, &drawing)?;
     }
     Ok(())
 }
@@ -176,20 +190,16 @@ struct Verdict {
 
 impl Verdict {
     fn passed(&self) -> bool {
-        self.report.passed() && self.surface.findings.is_empty()
+        self.report.passed()
     }
 }
 
 /// Checks each mesh in space and against the model; the first that does not pass, or the first.
-fn check_all(meshes: &[(String, MeshData)], model: &Model) -> Verdict {
-    let options = CheckOptions::new().dimension(Dimension::Space);
+fn check_all(meshes: &[(String, MeshData)], on: (&Model, &SurfaceLimits)) -> Verdict {
     let mut first = None;
     for (name, mesh) in meshes {
-        let verdict = Verdict {
-            name: name.clone(),
-            report: check(mesh, None, &options),
-            surface: against_model(mesh, model, &SurfaceLimits::default()),
-        };
+        let (report, surface) = check_on_model(mesh, on, None, &CheckOptions::new());
+        let verdict = Verdict { name: name.clone(), report, surface };
         if !verdict.passed() {
             return verdict;
         }
@@ -266,7 +276,6 @@ impl Summary {
         if let Some(verdict) = self.check.as_ref().filter(|verdict| !verdict.passed()) {
             line("written", "nothing: the mesh did not pass its check".into());
             lines.push(verdict::findings(&verdict.report, &verdict.name));
-            lines.push(complaints(&verdict.surface, &verdict.name));
         }
         lines.retain(|line| !line.is_empty());
         lines.join("\n")
@@ -308,16 +317,7 @@ fn measures(found: &SurfaceReport) -> String {
     )
 }
 
-fn complaints(found: &SurfaceReport, name: &str) -> String {
-    let complaint = |finding: &crate::check::surface::SurfaceFinding| {
-        Diagnostic::new(finding.message.clone()).rule(finding.id).at(name).to_string()
-    };
-    found.findings.iter().map(complaint).collect::<Vec<_>>().join("\n")
-}
-
 fn as_json(found: &SurfaceReport) -> Value {
-    let findings: Vec<Value> =
-        found.findings.iter().map(|f| json!({ "id": f.id, "message": f.message })).collect();
     json!({
         "chord_error": found.chord_error,
         "vertex_error": found.vertex_error,
@@ -325,16 +325,11 @@ fn as_json(found: &SurfaceReport) -> Value {
         "euler": found.euler,
         "euler_of_model": found.euler_of_model,
         "boundary_edges": found.boundary_edges,
-        "findings": findings,
     })
 }
 
 /// Adds what was measured against a model to the outcome of a check.
-pub fn tell(found: &SurfaceReport, name: &str, outcome: &mut Outcome) {
+pub fn tell(found: &SurfaceReport, outcome: &mut Outcome) {
     outcome.text.push_str(&format!("\n  {:<11}{}", "surface", measures(found)));
-    if !found.findings.is_empty() {
-        outcome.exit = outcome.exit.max(EXIT_FINDINGS);
-        outcome.text = format!("{}\n{}", complaints(found, name), outcome.text);
-    }
     outcome.json["surface"] = as_json(found);
 }

@@ -7,6 +7,50 @@
 use super::{Curve, CurveJet};
 use crate::vector::{Vector, distance, norm, segment_distance_sq};
 
+/// What is cut into edges: a curve of any kind by its parameter.
+pub trait Track {
+    /// First and last parameter.
+    fn domain(&self) -> [f64; 2];
+    /// Point and derivatives.
+    fn jet(&self, t: f64) -> CurveJet;
+    /// Parameters between which it is smooth enough for Gauss's rule.
+    fn knots(&self) -> &[f64];
+    /// Parameters of its corners.
+    fn corners(&self) -> Vec<f64>;
+    /// Whether it ends where it starts.
+    fn is_closed(&self) -> bool;
+    /// The point at a parameter.
+    fn at(&self, t: f64) -> Vector {
+        self.jet(t).point
+    }
+}
+
+impl Track for Curve {
+    fn domain(&self) -> [f64; 2] {
+        self.domain()
+    }
+
+    fn jet(&self, t: f64) -> CurveJet {
+        self.jet(t)
+    }
+
+    fn knots(&self) -> &[f64] {
+        self.knots()
+    }
+
+    fn corners(&self) -> Vec<f64> {
+        self.corners()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.is_closed()
+    }
+
+    fn at(&self, t: f64) -> Vector {
+        self.at(t)
+    }
+}
+
 /// How many edges a curve is given, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
@@ -51,7 +95,7 @@ pub enum DiscretizeError {
 ///
 /// # Complexity
 /// Linear in the number of knots and nodes.
-pub fn nodes(curve: &Curve, rule: Rule) -> Result<Vec<f64>, DiscretizeError> {
+pub fn nodes(curve: &impl Track, rule: Rule) -> Result<Vec<f64>, DiscretizeError> {
     check(rule)?;
     match rule {
         Rule::Corners => Ok(breaks(curve)),
@@ -86,7 +130,7 @@ fn check(rule: Rule) -> Result<(), DiscretizeError> {
 /// # Errors
 /// [`DiscretizeError::TooMany`], [`DiscretizeError::NoLength`].
 pub fn by_spacing(
-    curve: &Curve,
+    curve: &impl Track,
     spacing: impl Fn(&CurveJet, f64) -> f64,
 ) -> Result<Vec<f64>, DiscretizeError> {
     let mut way = 0.0;
@@ -102,7 +146,7 @@ pub fn by_spacing(
 }
 
 /// Number of edges of a piece that asks for this many.
-fn edges(curve: &Curve, piece: &[f64], wanted: f64) -> Result<usize, DiscretizeError> {
+fn edges(curve: &impl Track, piece: &[f64], wanted: f64) -> Result<usize, DiscretizeError> {
     if wanted > EDGES_MAX as f64 {
         return Err(DiscretizeError::TooMany(wanted));
     }
@@ -114,7 +158,7 @@ fn edges(curve: &Curve, piece: &[f64], wanted: f64) -> Result<usize, DiscretizeE
     Ok((libm::round(wanted) as usize).max(if whole { 3 } else { 1 }))
 }
 
-fn by_count(curve: &Curve, count: usize) -> Result<Vec<f64>, DiscretizeError> {
+fn by_count(curve: &impl Track, count: usize) -> Result<Vec<f64>, DiscretizeError> {
     let breaks = breaks(curve);
     let tables: Vec<Table> =
         breaks.windows(2).map(|p| Table::new(curve, p[0], p[1], 0.0, &|_, _| 1.0)).collect();
@@ -145,7 +189,7 @@ fn shares(lengths: &[f64], count: usize) -> Vec<usize> {
 }
 
 /// Spacings from the curvature; then, while an edge leaves the curve too far, all are made shorter.
-fn by_chord_error(curve: &Curve, error: f64) -> Result<Vec<f64>, DiscretizeError> {
+fn by_chord_error(curve: &impl Track, error: f64) -> Result<Vec<f64>, DiscretizeError> {
     let longest = length(curve) / 8.0;
     let mut factor = 1.0;
     loop {
@@ -181,7 +225,7 @@ pub fn spacing_for_triangles(area: f64, count: f64) -> f64 {
 
 /// Largest distance of the curve from the edges between its nodes, at seven points of each.
 #[must_use]
-pub fn chord_error(curve: &Curve, nodes: &[f64]) -> f64 {
+pub fn chord_error(curve: &impl Track, nodes: &[f64]) -> f64 {
     let worst = |pair: &[f64]| {
         let (a, b) = (curve.at(pair[0]), curve.at(pair[1]));
         let at = |i: u32| curve.at(pair[0] + f64::from(i) / 8.0 * (pair[1] - pair[0]));
@@ -192,19 +236,19 @@ pub fn chord_error(curve: &Curve, nodes: &[f64]) -> f64 {
 
 /// Arc length of the curve.
 #[must_use]
-pub fn length(curve: &Curve) -> f64 {
+pub fn length(curve: &impl Track) -> f64 {
     let part = |piece: &[f64]| Table::new(curve, piece[0], piece[1], 0.0, &|_, _| 1.0).total();
     breaks(curve).windows(2).map(part).sum()
 }
 
 /// The points at these parameters.
 #[must_use]
-pub fn points(curve: &Curve, nodes: &[f64]) -> Vec<Vector> {
+pub fn points(curve: &impl Track, nodes: &[f64]) -> Vec<Vector> {
     nodes.iter().map(|&t| curve.at(t)).collect()
 }
 
 /// The ends of the parameter and the corners between.
-fn breaks(curve: &Curve) -> Vec<f64> {
+fn breaks(curve: &impl Track) -> Vec<f64> {
     let [start, end] = curve.domain();
     let mut breaks = vec![start];
     breaks.extend(curve.corners());
@@ -230,7 +274,7 @@ struct Table {
 
 impl Table {
     fn new(
-        curve: &Curve,
+        curve: &impl Track,
         from: f64,
         to: f64,
         way: f64,
@@ -266,7 +310,7 @@ impl Table {
     /// Parameters that cut the integral into `count` equal parts, without the last end.
     fn parts(
         &self,
-        curve: &Curve,
+        curve: &impl Track,
         count: usize,
         spacing: &impl Fn(&CurveJet, f64) -> f64,
     ) -> Vec<f64> {
@@ -276,7 +320,12 @@ impl Table {
     }
 
     /// The parameter up to which the integral is `sum`: Newton's method, kept in its interval.
-    fn invert(&self, curve: &Curve, sum: f64, spacing: &impl Fn(&CurveJet, f64) -> f64) -> f64 {
+    fn invert(
+        &self,
+        curve: &impl Track,
+        sum: f64,
+        spacing: &impl Fn(&CurveJet, f64) -> f64,
+    ) -> f64 {
         let i = self.sum.partition_point(|&s| s <= sum).clamp(1, self.sum.len() - 1) - 1;
         let (start, way) = (self.at[i], self.ways[i]);
         let (mut low, mut high) = (start, self.at[i + 1]);
@@ -314,7 +363,7 @@ const GAUSS: [[f64; 2]; 5] = [
 
 /// Integral of ds / h and arc length from `low` to `high`; the way to `low` is given.
 fn integrate(
-    curve: &Curve,
+    curve: &impl Track,
     low: f64,
     high: f64,
     way: f64,

@@ -267,6 +267,7 @@ pub(super) fn excerpt(text: &str) -> String {
 /// The lines of a text file that say something: without the byte order mark, line ends (`\n` or
 /// `\r\n`), blanks at both ends, and empty lines; numbered from 1. Bytes that are no UTF-8 become
 /// replacement characters: they may stand in names and comments, and are no part of a number.
+#[derive(Clone)]
 pub(super) struct TextLines<'a> {
     lines: std::slice::Split<'a, u8, fn(&u8) -> bool>,
     number: u64,

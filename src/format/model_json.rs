@@ -4,7 +4,7 @@ use super::curve_json::{self, read_rule};
 use super::domain_file::{DomainReadError, Problem, excerpt, without_mark};
 use super::domain_json::{Item, Path, Read, parse};
 use crate::curve::Curve;
-use crate::model::{Model, ModelCurve, Patch};
+use crate::model::{Model, ModelCurve, Patch, Trim, TrimCurve};
 use crate::surface::{Coons, Revolution, Side, Surface, SurfaceError, Tensor};
 use crate::vector::{Vector, add};
 use serde_json::Value;
@@ -19,9 +19,13 @@ pub fn is_model(bytes: &[u8]) -> bool {
     if bytes.trim_ascii_start().first() != Some(&b'{') {
         return false;
     }
-    serde_json::from_slice::<Value>(bytes).is_ok_and(|value| {
-        value.get("patches").is_some() || value.get("format").is_some_and(|format| format == FORMAT)
-    })
+    serde_json::from_slice::<Value>(bytes).is_ok_and(|value| is_model_value(&value))
+}
+
+/// The same of JSON that was parsed.
+#[must_use]
+pub fn is_model_value(value: &Value) -> bool {
+    value.get("patches").is_some() || value.get("format").is_some_and(|format| format == FORMAT)
 }
 
 /// Reads a surface model.
@@ -37,7 +41,10 @@ pub fn read(bytes: &[u8]) -> Result<Model, DomainReadError> {
         "name",
         "comment",
         "spacing",
+        "chord_error",
+        "angle_per_edge",
         "corner_tolerance",
+        "parts_may_cross",
         "curves",
         "patches",
     ])?;
@@ -48,7 +55,13 @@ pub fn read(bytes: &[u8]) -> Result<Model, DomainReadError> {
     root.key("version", |item| item.integer("the version", 1, 1).map(|_| ()))?;
     let mut reader = Reader { model: Model::default() };
     reader.model.spacing = root.key("spacing", positive)?;
+    reader.model.chord_error = root.key("chord_error", positive)?;
+    reader.model.angle_per_edge_deg = root.key("angle_per_edge", |item| match positive(item)? {
+        degrees if degrees <= 120.0 => Ok(degrees),
+        _ => Err(item.expected("an angle in degrees, at most 120")),
+    })?;
     reader.model.corner_tolerance = root.key("corner_tolerance", positive)?;
+    reader.model.parts_may_cross = root.flag("parts_may_cross")?;
     root.key("curves", |item| item.each("an array of curves", |item| reader.named_curve(item)))?;
     root.required("patches", |item| item.each("an array of patches", |item| reader.patch(item)))?;
     Ok(reader.model)
@@ -126,8 +139,54 @@ impl Reader {
         let marker = item.key("marker", |item| item.marker())?;
         let marker = marker.unwrap_or(i32::try_from(number).unwrap_or(i32::MAX));
         let reversed = item.flag("reversed")?;
+        let trim = Trim {
+            outline: item.key("outline", |item| self.trim_loop(item))?,
+            holes: self.holes(item)?,
+        };
+        if trim != Trim::default() {
+            self.model.trims.insert(self.model.patches.len(), trim);
+        }
         self.model.patches.push(Patch { name, surface, marker, reversed });
         Ok(())
+    }
+
+    fn holes(&mut self, item: Item) -> Read<Vec<Vec<TrimCurve>>> {
+        let mut holes = Vec::new();
+        item.key("holes", |item| {
+            item.each("an array of loops", |item| {
+                holes.push(self.trim_loop(item)?);
+                Ok(())
+            })
+        })?;
+        Ok(holes)
+    }
+
+    fn trim_loop(&mut self, item: Item) -> Read<Vec<TrimCurve>> {
+        let mut curves = Vec::new();
+        item.each("an array of curves", |item| {
+            curves.push(self.trim_curve(item)?);
+            Ok(())
+        })?;
+        if curves.is_empty() { Err(item.expected("a curve")) } else { Ok(curves) }
+    }
+
+    /// A curve of space by its name, one with its parameters, or a curve of (u, v).
+    fn trim_curve(&mut self, item: Item) -> Read<TrimCurve> {
+        if item.value.is_string() {
+            return Ok(TrimCurve::Space { curve: self.curve(item)?, parameters: None });
+        }
+        if item.value.get("curve").is_some() {
+            item.only_keys(&["curve", "uv"])?;
+            let curve = item.required("curve", |item| self.curve(item))?;
+            let parameters = item.key("uv", |item| match read_rule(item)? {
+                None => flat_curve(item),
+                Some(_) => Err(item.expected("a curve without a rule: that of 'curve' holds")),
+            })?;
+            return Ok(TrimCurve::Space { curve, parameters });
+        }
+        let curve = flat_curve(item)?;
+        let marker = item.key("marker", |item| item.marker())?;
+        Ok(TrimCurve::Parameters { curve, rule: read_rule(item)?, marker })
     }
 
     fn coons(&mut self, item: Item) -> Read<Surface> {
@@ -169,9 +228,18 @@ impl Reader {
     }
 }
 
+/// A curve of (u, v).
+fn flat_curve(item: Item) -> Read<Curve> {
+    let curve = curve_json::read(item)?;
+    match curve.points().iter().all(|p| p[2] == 0.0) {
+        true => Ok(curve),
+        false => Err(item.expected("a curve of (u, v), without a third coordinate")),
+    }
+}
+
 /// Refuses keys that neither every patch has nor this kind.
 fn only(item: Item, more: &[&str]) -> Read<()> {
-    let common = ["name", "kind", "marker", "reversed"];
+    let common = ["name", "kind", "marker", "reversed", "outline", "holes"];
     let known: Vec<&str> = common.iter().chain(more).copied().collect();
     item.only_keys(&known)
 }

@@ -22,6 +22,7 @@ pub struct MeshView<'a> {
     triangles: &'a [[u32; 3]],
     edges: &'a [MarkedEdge],
     regions: &'a [i32],
+    parameters: &'a [[f64; 2]],
 }
 
 impl<'a> From<&'a Mesh> for MeshView<'a> {
@@ -31,6 +32,7 @@ impl<'a> From<&'a Mesh> for MeshView<'a> {
             triangles: &mesh.triangles,
             edges: &mesh.edges,
             regions: &mesh.regions,
+            parameters: &[],
         }
     }
 }
@@ -42,11 +44,26 @@ impl<'a> From<&'a MeshData> for MeshView<'a> {
             triangles: &mesh.triangles,
             edges: &mesh.edges,
             regions: &mesh.regions,
+            parameters: &[],
         }
     }
 }
 
 impl<'a> MeshView<'a> {
+    /// The same mesh with the parameters (u, v) of each point, which VTK files carry as point data;
+    /// left out unless there is one for each.
+    #[must_use]
+    pub fn with_parameters(mut self, parameters: &'a [[f64; 2]]) -> Self {
+        self.parameters = if parameters.len() == self.point_count() { parameters } else { &[] };
+        self
+    }
+
+    /// The parameters (u, v) of the points; empty where there are none.
+    #[must_use]
+    pub const fn parameters(&self) -> &'a [[f64; 2]] {
+        self.parameters
+    }
+
     /// Number of points.
     #[must_use]
     pub fn point_count(&self) -> usize {

@@ -439,6 +439,12 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
         let edge = index.checked_sub(triangles.len()).map(|index| edges[index]);
         out.integers(&[edge.map_or(0, |edge| edge.marker)])?;
     }
+    let uv = mesh.parameters();
+    if !uv.is_empty() {
+        let count = uv.len();
+        out.end(&format!("POINT_DATA {count}\nFIELD FieldData 1\nuv 2 {count} double"))?;
+        uv.iter().try_for_each(|&pair| out.pair(pair))?;
+    }
     if is_binary { out.line("") } else { Ok(()) }
 }
 
@@ -459,6 +465,14 @@ impl Out<'_, '_> {
             self.out.bytes(b"\n")?;
         }
         self.line(text)
+    }
+
+    fn pair(&mut self, [u, v]: [f64; 2]) -> io::Result<()> {
+        if self.is_binary {
+            return [u, v].iter().try_for_each(|c| self.out.bytes(&c.to_be_bytes()));
+        }
+        self.out.float(u, b' ')?;
+        self.out.float(v, b'\n')
     }
 
     fn point(&mut self, [x, y, z]: [f64; 3]) -> io::Result<()> {

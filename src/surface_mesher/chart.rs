@@ -18,6 +18,8 @@ pub(super) struct Lift {
     pub(super) point: Vector,
     /// First fundamental form in scaled parameters.
     pub(super) form: FirstForm,
+    /// The unit normal; 0 where there is none.
+    pub(super) normal: Vector,
 }
 
 /// A patch with its scaled parameters.
@@ -76,7 +78,8 @@ impl<'a> Sheet<'a> {
 }
 
 pub(super) fn lift(tangents: &Tangents) -> Lift {
-    Lift { point: tangents.point, form: FirstForm::new(tangents) }
+    let normal = vector::unit(cross(tangents.u, tangents.v)).unwrap_or_default();
+    Lift { point: tangents.point, form: FirstForm::new(tangents), normal }
 }
 
 /// The power of two nearest to `x`; 1 when `x` is no length.

@@ -7,7 +7,7 @@ mod near;
 mod tangent;
 
 use super::lift::Weld;
-use super::outline::Node;
+use super::outline::{Node, Rim};
 use super::{Plan, SurfaceMeshError, SurfaceMeshed};
 use crate::front::FrontError;
 use crate::mesher::{Observer, Options, Stage};
@@ -34,13 +34,18 @@ impl Plan {
     pub(super) fn direct(
         &self,
         model: &Model,
-        nodes: &[Vec<Node>],
+        rims: &[Rim],
         options: &Options,
         observer: &mut dyn Observer,
     ) -> Result<SurfaceMeshed, SurfaceMeshError> {
+        if let Some(piece) = self.outline.pieces.iter().find(|piece| !piece.loops.is_empty()) {
+            let name = model.patches[piece.patch].name.clone();
+            let reason = "the front in space takes whole patches only".to_owned();
+            return Err(SurfaceMeshError::Trim { name, reason });
+        }
         observer.stage(Stage::Size);
         let limit = options.triangles_max;
-        let predicted: Vec<f64> = (0..nodes.len()).map(|i| self.predicted(i)).collect();
+        let predicted: Vec<f64> = (0..rims.len()).map(|i| self.predicted(i)).collect();
         let triangles = predicted.iter().sum::<f64>();
         if triangles > limit as f64 {
             return Err(SurfaceMeshError::TooMany { predicted: triangles, stopped: false, limit });
@@ -52,10 +57,10 @@ impl Plan {
         observer.stage(Stage::Front);
         let mut weld = Weld::new(&self.outline);
         let mut meshed = self.nothing_yet(prediction);
-        for (i, nodes) in nodes.iter().enumerate() {
+        for (i, rim) in rims.iter().enumerate() {
             let name = &model.patches[self.outline.pieces[i].patch].name;
             let budget = (BACKSTOP * predicted[i]) as usize + 1000;
-            let (laid, places) = self.lay(i, nodes, (&mut weld, budget), observer, name)?;
+            let (laid, places) = self.lay(i, &rim.nodes, (&mut weld, budget), observer, name)?;
             meshed.front.inserted += places.len() as u64;
             meshed.front.accepted_existing += laid.len().saturating_sub(places.len()) as u64;
             let rounds = options.improve.sweeps;
@@ -66,7 +71,7 @@ impl Plan {
             laid.into_iter().for_each(|corners| weld.push(i as u32, marker, corners));
         }
         observer.stage(Stage::Collect);
-        meshed.mesh = weld.finish(model, &self.outline);
+        (meshed.mesh, _) = weld.finish(model, &self.outline, rims);
         Ok(meshed)
     }
 

@@ -5,7 +5,7 @@ use crate::metric::FirstForm;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation};
-use crate::vector::{add, cross, dot, norm_sq, sub};
+use crate::vector::{cross, dot, norm_sq, sub};
 
 /// Makes an open region nearly Delaunay in the metric of the surface: an edge is flipped when the
 /// circle of one triangle, as the metric in its middle sees it, holds the other apex.
@@ -31,16 +31,16 @@ pub(super) fn towards_circles(mesh: &mut Triangulation, points: &[Point2], lifts
 /// Flips an edge when that makes the worse of its two triangles better in space, until no flip does;
 /// returns the number of flips.
 ///
-/// Ends: each flip raises the list of all shapes, sorted upwards, in lexicographic order.
+/// Ends: the shape of a triangle depends on its corners alone, and each flip raises the list of all
+/// shapes, sorted upwards, in lexicographic order.
 pub(super) fn towards_shape(mesh: &mut Triangulation, points: &[Point2], lifts: &[Lift]) -> u64 {
     let mut suspects = all_edges(mesh);
     let mut flips = 0;
     while let Some(e) = suspects.pop() {
         let Some(quad) = Quad::of(mesh, points, e) else { continue };
-        let [a, b, c, d] = quad.vertices.map(|v| lifts[v].point);
-        let up = add(cross(sub(b, a), sub(c, a)), cross(sub(a, b), sub(d, b)));
-        let now = shape([a, b, c], up).min(shape([b, a, d], up));
-        let then = shape([a, d, c], up).min(shape([d, b, c], up));
+        let [a, b, c, d] = quad.vertices.map(|v| &lifts[v]);
+        let now = shape([a, b, c]).min(shape([b, a, d]));
+        let then = shape([a, d, c]).min(shape([d, b, c]));
         // Shapes are rounded: an equal one must not pass for a better one.
         if then > now + 1e-12 {
             flips += 1;
@@ -85,15 +85,22 @@ impl Quad {
     }
 }
 
-/// Mean ratio in space: 1 when equilateral, negative when the triangle faces away from `up`. A
-/// triangle at a pole is an edge in space, and no concern.
-pub(super) fn shape([a, b, c]: [[f64; 3]; 3], up: [f64; 3]) -> f64 {
+/// A triangle may turn this far (a cosine) from the normals at its corners before it counts as worse.
+const TURN: f64 = 0.7;
+
+/// Mean ratio in space: 1 when equilateral, less when the triangle turns away from one of the normals
+/// at its corners, negative when it faces away. A triangle at a pole is an edge in space, and no
+/// concern.
+fn shape(corners: [&Lift; 3]) -> f64 {
     const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
+    let [a, b, c] = corners.map(|corner| corner.point);
     if a == b || b == c || c == a {
         return f64::INFINITY;
     }
     let normal = cross(sub(b, a), sub(c, a));
     let sides = norm_sq(sub(b, a)) + norm_sq(sub(c, b)) + norm_sq(sub(a, c));
-    let ratio = TWO_SQRT_3 * norm_sq(normal).sqrt() / sides;
-    if dot(normal, up) > 0.0 { ratio } else { -ratio }
+    let length = norm_sq(normal).sqrt();
+    let normals = corners.iter().map(|corner| corner.normal).filter(|n| *n != [0.0; 3]);
+    let turn = normals.map(|n| dot(n, normal)).fold(TURN * length, f64::min) / TURN;
+    TWO_SQRT_3 * turn / sides
 }

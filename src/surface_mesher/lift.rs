@@ -2,7 +2,7 @@
 //! welded by index, poles collapsed, all facing the same way.
 
 use super::SurfaceMeshError;
-use super::outline::{Node, Outline, Piece, is_forward};
+use super::outline::{Outline, Piece, Rim, is_forward};
 use super::patch::PatchMesh;
 use crate::mesh::{MarkedEdge, MeshData};
 use crate::model::Model;
@@ -10,9 +10,14 @@ use crate::surface::Side;
 use crate::vector::{cross, dot, sub};
 use std::collections::VecDeque;
 
+/// Parameters of a point that no patch has used yet.
+const UNKNOWN: [f64; 2] = [f64::NAN; 2];
+
 /// A surface mesh in the making.
 pub(super) struct Weld {
     pub(super) mesh: MeshData,
+    /// Parameters of each point: those on the first patch that has it.
+    pub(super) parameters: Vec<[f64; 2]>,
     /// Index of the piece of each triangle.
     pieces: Vec<u32>,
 }
@@ -20,7 +25,8 @@ pub(super) struct Weld {
 impl Weld {
     pub(super) fn new(outline: &Outline) -> Self {
         let mesh = MeshData { points: outline.points.clone(), ..MeshData::default() };
-        Self { mesh, pieces: Vec::new() }
+        let parameters = vec![UNKNOWN; mesh.points.len()];
+        Self { mesh, parameters, pieces: Vec::new() }
     }
 
     /// Adds a patch whose first points are the nodes of its outline.
@@ -28,14 +34,20 @@ impl Weld {
         &mut self,
         piece: u32,
         (marker, name): (i32, &str),
-        nodes: &[Node],
+        rim: &Rim,
         patch: &PatchMesh,
     ) -> Result<(), SurfaceMeshError> {
+        let nodes = &rim.nodes;
         let mut number: Vec<u32> = nodes.iter().map(|node| node.vertex).collect();
-        for lift in &patch.lifts[nodes.len()..] {
+        for (node, &uv) in nodes.iter().zip(&patch.parameters) {
+            self.place(node.vertex, uv);
+        }
+        for (lift, &uv) in patch.lifts.iter().zip(&patch.parameters).skip(nodes.len()) {
             number.push(self.mesh.points.len() as u32);
             self.mesh.points.push(lift.point);
+            self.parameters.push(uv);
         }
+        let sides = rim.loops().next().map_or(0, |range| range.len());
         for t in patch.mesh.triangles() {
             let local = patch.mesh.corners(t);
             let corners = local.map(|v| number[v.index()]);
@@ -44,7 +56,7 @@ impl Weld {
                 self.mesh.triangles.push(corners);
                 self.mesh.regions.push(marker);
                 self.pieces.push(piece);
-            } else if !is_pole(local.map(|v| v.index()), corners, nodes.len()) {
+            } else if !is_pole(local.map(|v| v.index()), corners, sides) {
                 let at = self.mesh.points[if a == b { a } else { c } as usize];
                 return Err(SurfaceMeshError::Coarse { name: name.to_owned(), at });
             }
@@ -59,9 +71,23 @@ impl Weld {
         self.pieces.push(piece);
     }
 
+    /// Notes the parameters of a point that no patch has used yet.
+    pub(super) fn place(&mut self, vertex: u32, uv: [f64; 2]) {
+        self.parameters.resize(self.mesh.points.len(), UNKNOWN);
+        let known = &mut self.parameters[vertex as usize];
+        if known[0].is_nan() {
+            *known = uv;
+        }
+    }
+
     /// The mesh, with marked edges, all patches facing alike, without points that nothing uses.
-    pub(super) fn finish(mut self, model: &Model, outline: &Outline) -> MeshData {
-        let mut facing = Facing::of(model, outline);
+    pub(super) fn finish(
+        mut self,
+        model: &Model,
+        outline: &Outline,
+        rims: &[Rim],
+    ) -> (MeshData, Vec<[f64; 2]>) {
+        let mut facing = Facing::of(model, outline, rims);
         facing.turn_closed_outwards(&self.mesh, &self.pieces);
         for (triangle, &piece) in self.mesh.triangles.iter_mut().zip(&self.pieces) {
             if facing.turned[piece as usize] {
@@ -74,8 +100,8 @@ impl Weld {
             let edge = |pair: &[u32]| MarkedEdge { vertices: [pair[0], pair[1]], marker };
             self.mesh.edges.extend(shared.vertices.windows(2).map(edge));
         }
-        drop_unused(&mut self.mesh);
-        self.mesh
+        drop_unused(&mut self.mesh, &mut self.parameters);
+        (self.mesh, self.parameters)
     }
 }
 
@@ -97,12 +123,16 @@ struct Run {
     against: bool,
 }
 
-fn runs(piece: &Piece) -> Vec<Run> {
+fn runs(piece: &Piece, rim: &Rim) -> Vec<Run> {
     let on = |side: Side| {
         let along = piece.sides[side as usize].iter();
         along.map(move |a| Run { curve: a.curve, against: a.reversed == is_forward(side) })
     };
-    Side::ALL.into_iter().flat_map(on).collect()
+    let sides = Side::ALL.into_iter().flat_map(on);
+    let around = piece.loops.iter().zip(&rim.forward).flat_map(|(cuts, &forward)| {
+        cuts.iter().map(move |cut| Run { curve: cut.curve, against: cut.reversed == forward })
+    });
+    sides.chain(around).collect()
 }
 
 /// Which pieces face against their normals.
@@ -116,9 +146,10 @@ struct Facing {
 
 impl Facing {
     /// Patches along a curve face alike when one runs along it and the other against it.
-    fn of(model: &Model, outline: &Outline) -> Self {
+    fn of(model: &Model, outline: &Outline, rims: &[Rim]) -> Self {
         let count = outline.pieces.len();
-        let runs: Vec<Vec<Run>> = outline.pieces.iter().map(runs).collect();
+        let runs: Vec<Vec<Run>> =
+            outline.pieces.iter().zip(rims).map(|(piece, rim)| runs(piece, rim)).collect();
         let mut beside: Vec<Vec<(usize, bool)>> = vec![Vec::new(); outline.curves.len()];
         for (i, run) in runs.iter().enumerate().flat_map(|(i, r)| r.iter().map(move |r| (i, r))) {
             beside[run.curve].push((i, run.against));
@@ -173,7 +204,7 @@ impl Facing {
 }
 
 /// Drops the points that no triangle uses: vertices that a tolerance has made one with others.
-fn drop_unused(mesh: &mut MeshData) {
+fn drop_unused(mesh: &mut MeshData, parameters: &mut Vec<[f64; 2]>) {
     let mut new = vec![u32::MAX; mesh.points.len()];
     for &v in mesh.triangles.iter().flatten() {
         new[v as usize] = 0;
@@ -181,11 +212,10 @@ fn drop_unused(mesh: &mut MeshData) {
     for (slot, number) in new.iter_mut().filter(|slot| **slot == 0).zip(0..) {
         *slot = number;
     }
-    let mut old = 0;
-    mesh.points.retain(|_| {
-        old += 1;
-        new[old - 1] != u32::MAX
-    });
+    let mut kept = new.iter().map(|&number| number != u32::MAX);
+    mesh.points.retain(|_| kept.next() == Some(true));
+    let mut kept = new.iter().map(|&number| number != u32::MAX);
+    parameters.retain(|_| kept.next() == Some(true));
     for v in mesh.triangles.iter_mut().flatten() {
         *v = new[*v as usize];
     }

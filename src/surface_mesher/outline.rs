@@ -2,17 +2,18 @@
 //! mesh is watertight by construction.
 
 use super::SurfaceMeshError;
+use super::trim::{Cut, Loops, holds, turn};
 use crate::curve::Curve;
-use crate::curve::discretize::{self, nodes};
-use crate::model::Model;
-use crate::surface::{Side, Surface};
-use crate::vector::{Vector, key};
+use crate::curve::discretize::{self, Track, nodes};
+use crate::model::{Model, Patch, Trim, TrimCurve};
+use crate::surface::{Line, Side, Surface, Trace};
+use crate::vector::{Vector, distance, key};
 use std::collections::BTreeMap;
 
 /// A smooth curve of the model, which may be the side of any number of patches.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
-    pub(super) curve: Curve,
+    pub(super) curve: Line,
     /// As messages call it.
     pub(super) name: String,
     /// Parameters of its nodes.
@@ -33,7 +34,38 @@ pub(super) struct Piece {
     /// By [`Side::ALL`]: the curves along each, in the direction of the rising parameter; none for a
     /// pole.
     pub(super) sides: [Vec<Along>; 4],
+    /// Whether the first loop takes the place of the sides.
+    pub(super) has_outline: bool,
+    /// The loops that trim it.
+    pub(super) loops: Vec<Vec<Cut>>,
 }
+
+/// The nodes around a piece: those of the sides or the outline, counterclockwise, then those of the
+/// holes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rim {
+    pub(super) nodes: Vec<Node>,
+    /// Where each loop starts in the list of nodes.
+    pub(super) starts: Vec<usize>,
+    /// Of each trimming loop, whether it runs with the patch on its left.
+    pub(super) forward: Vec<bool>,
+}
+
+impl Rim {
+    fn add(&mut self, nodes: &[Node]) {
+        self.starts.push(self.nodes.len());
+        self.nodes.extend(nodes);
+    }
+
+    /// Nodes of the loops.
+    pub(super) fn loops(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let ends = self.starts.iter().skip(1).copied().chain([self.nodes.len()]);
+        self.starts.iter().zip(ends).map(|(&start, end)| start..end)
+    }
+}
+
+/// How far off is rounding, as a fraction of the model's diagonal.
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// A shared curve as a part of a side.
 #[derive(Clone, Copy, Debug)]
@@ -81,9 +113,17 @@ impl Outline {
         }
         for (index, patch) in model.patches.iter().enumerate() {
             for surface in patch.surface.pieces() {
-                let sides =
-                    Side::ALL.map(|side| outline.along(&surface.side(side), &patch.name, side));
-                outline.pieces.push(Piece { patch: index, surface, sides });
+                let trim = model.trims.get(&index);
+                let has_outline = trim.is_some_and(|trim| trim.outline.is_some());
+                let sides = Side::ALL.map(|side| match has_outline {
+                    true => Vec::new(),
+                    false => outline.along(&surface.side(side), &patch.name, side),
+                });
+                let loops = match trim {
+                    Some(trim) => outline.trim(trim, patch, &surface)?,
+                    None => Vec::new(),
+                };
+                outline.pieces.push(Piece { patch: index, surface, sides, has_outline, loops });
             }
         }
         Ok(outline)
@@ -105,6 +145,78 @@ impl Outline {
             .collect()
     }
 
+    /// The curves of the loops of a trimmed patch.
+    fn trim(
+        &mut self,
+        trim: &Trim,
+        patch: &Patch,
+        surface: &Surface,
+    ) -> Result<Vec<Vec<Cut>>, SurfaceMeshError> {
+        if patch.surface.pieces().len() > 1 {
+            let (name, reason) = (patch.name.clone(), "it has creases".to_owned());
+            return Err(SurfaceMeshError::Trim { name, reason });
+        }
+        let mut loops = Vec::new();
+        for ring in trim.loops() {
+            let mut cuts = Vec::new();
+            for curve in ring {
+                cuts.extend(self.cuts(curve, patch, surface)?);
+            }
+            loops.push(cuts);
+        }
+        Ok(loops)
+    }
+
+    /// The smooth pieces of a curve of a loop.
+    fn cuts(
+        &mut self,
+        curve: &TrimCurve,
+        patch: &Patch,
+        surface: &Surface,
+    ) -> Result<Vec<Cut>, SurfaceMeshError> {
+        let name = format!("a loop of patch {}", patch.name);
+        match curve {
+            TrimCurve::Space { curve, parameters } => {
+                let pieces: Vec<Curve> =
+                    curve.pieces().into_iter().filter(|piece| !piece.is_point()).collect();
+                let given = parameters.as_ref().map(Curve::pieces);
+                if given.as_ref().is_some_and(|given| given.len() != pieces.len()) {
+                    let reason = "a curve has other corners in (u, v) than in space".to_owned();
+                    return Err(SurfaceMeshError::Trim { name: patch.name.clone(), reason });
+                }
+                let cut = |(i, piece): (usize, Curve)| {
+                    let (curve, reversed) = self.find_or_add(piece, &name);
+                    self.curves[curve].uses += 1;
+                    let turned = |p: &Curve| if reversed { p.reversed() } else { p.clone() };
+                    let parameters = given.as_ref().map(|given| turned(&given[i]));
+                    Cut { curve, reversed, parameters }
+                };
+                Ok(pieces.into_iter().enumerate().map(cut).collect())
+            }
+            TrimCurve::Parameters { curve, rule, marker } => {
+                let trace = |parameters: &Curve| {
+                    let (surface, parameters) = (surface.clone(), parameters.clone());
+                    Line::Trace(Box::new(Trace { surface, parameters }))
+                };
+                let failed = |error| SurfaceMeshError::Curve { name: name.clone(), error };
+                let all = rule.map(|rule| nodes(&trace(curve), rule)).transpose();
+                let all = all.map_err(failed)?.unwrap_or_default();
+                let mut cuts = Vec::new();
+                for parameters in curve.pieces() {
+                    let [start, end] = parameters.domain();
+                    let inside = all.iter().filter(|t| **t >= start && **t <= end);
+                    let mut shared = Shared::new(trace(&parameters), &name);
+                    shared.nodes = inside.copied().collect();
+                    (shared.marker, shared.uses) = (*marker, 1);
+                    let curve = self.curves.len();
+                    self.curves.push(shared);
+                    cuts.push(Cut { curve, reversed: false, parameters: Some(parameters) });
+                }
+                Ok(cuts)
+            }
+        }
+    }
+
     /// The curve that equals this one, and whether it runs the other way.
     fn find_or_add(&mut self, curve: Curve, name: &str) -> (usize, bool) {
         let mut ends = curve.ends().map(key);
@@ -116,14 +228,7 @@ impl Outline {
             }
         }
         known.push(self.curves.len());
-        self.curves.push(Shared {
-            curve,
-            name: name.to_owned(),
-            nodes: Vec::new(),
-            vertices: Vec::new(),
-            marker: None,
-            uses: 0,
-        });
+        self.curves.push(Shared::new(Line::Curve(curve), name));
         (self.curves.len() - 1, false)
     }
 
@@ -145,7 +250,7 @@ impl Outline {
     }
 
     /// Numbers the nodes: ends at equal places are one vertex.
-    pub(super) fn number(&mut self) {
+    pub(super) fn number(&mut self, tolerance: f64) {
         let mut at_end: BTreeMap<[u64; 3], u32> = BTreeMap::new();
         let points = &mut self.points;
         for shared in self.curves.iter_mut().filter(|shared| shared.uses > 0) {
@@ -161,11 +266,11 @@ impl Outline {
             };
             shared.vertices = shared.nodes.iter().enumerate().map(vertex).collect();
         }
-        self.join_corners();
+        self.join_corners(tolerance);
     }
 
     /// Makes one vertex of the ends of curves that meet in a corner of a patch within a tolerance.
-    fn join_corners(&mut self) {
+    fn join_corners(&mut self, tolerance: f64) {
         let mut same: Vec<u32> = (0..self.points.len() as u32).collect();
         for piece in &self.pieces {
             let ends: Vec<[u32; 2]> =
@@ -174,6 +279,17 @@ impl Outline {
                 let [first, _] = ends[(i + 1) % ends.len()];
                 let (a, b) = (root(&same, last), root(&same, first));
                 same[a.max(b) as usize] = a.min(b);
+            }
+        }
+        for cuts in self.pieces.iter().flat_map(|piece| &piece.loops) {
+            for (i, cut) in cuts.iter().enumerate() {
+                let next = &cuts[(i + 1) % cuts.len()];
+                let (a, b) = (self.cut_end(cut, false), self.cut_end(next, true));
+                let gap = distance(self.points[a as usize], self.points[b as usize]);
+                if gap <= tolerance {
+                    let (a, b) = (root(&same, a), root(&same, b));
+                    same[a.max(b) as usize] = a.min(b);
+                }
             }
         }
         for vertex in self.curves.iter_mut().flat_map(|shared| &mut shared.vertices) {
@@ -192,8 +308,46 @@ impl Outline {
         Some(if is_forward(side) { [first, last] } else { [last, first] })
     }
 
+    fn cut_end(&self, cut: &Cut, at_start: bool) -> u32 {
+        let vertices = &self.curves[cut.curve].vertices;
+        if at_start != cut.reversed { vertices[0] } else { vertices[vertices.len() - 1] }
+    }
+
+    /// The nodes around a piece and its holes.
+    ///
+    /// # Errors
+    /// What is wrong with a loop.
+    pub(super) fn rim(&self, piece: &Piece, tolerance: f64) -> Result<Rim, String> {
+        let mut rim = Rim::default();
+        if !piece.has_outline {
+            rim.add(&self.around(piece));
+        }
+        let Piece { surface, loops, .. } = piece;
+        let all = Loops { surface, curves: &self.curves, points: &self.points, tolerance };
+        for (i, cuts) in loops.iter().enumerate() {
+            let mut nodes = all.nodes(cuts)?;
+            let is_hole = i > 0 || !piece.has_outline;
+            let forward = (turn(&nodes) > 0.0) != is_hole;
+            if !forward {
+                nodes.reverse();
+            }
+            if is_hole {
+                let mut before = rim.loops().map(|range| &rim.nodes[range]);
+                let outline = before.next().is_some_and(|outline| holds(outline, &nodes[0]));
+                if !outline || before.any(|hole| holds(hole, &nodes[0]) || holds(&nodes, &hole[0]))
+                {
+                    let Node { u, v, .. } = nodes[0];
+                    return Err(format!("the hole at ({u}, {v}) lies outside, or in another hole"));
+                }
+            }
+            rim.add(&nodes);
+            rim.forward.push(forward);
+        }
+        Ok(rim)
+    }
+
     /// The nodes around a piece, counterclockwise; a pole has but its two corners.
-    pub(super) fn around(&self, piece: &Piece) -> Vec<Node> {
+    fn around(&self, piece: &Piece) -> Vec<Node> {
         let mut nodes: Vec<Node> = Vec::new();
         for side in Side::ALL {
             let mut list = self.on_side(piece, side);
@@ -239,6 +393,13 @@ impl Outline {
             [last.u, last.v] = high;
         }
         list
+    }
+}
+
+impl Shared {
+    fn new(curve: Line, name: &str) -> Self {
+        let (nodes, vertices) = (Vec::new(), Vec::new());
+        Self { curve, name: name.to_owned(), nodes, vertices, marker: None, uses: 0 }
     }
 }
 

@@ -1,7 +1,7 @@
 //! One patch: the background triangulation of its outline in (u, v), the front, improvement.
 
 use super::chart::{Lift, SurfaceChart};
-use super::outline::Node;
+use super::outline::{Node, Rim};
 use super::{SurfaceMeshError, flip, smooth};
 use crate::background::{Background, OUTSIDE};
 use crate::domain::validate::{Plc, PlcInside, PlcSegment};
@@ -21,6 +21,8 @@ pub(super) struct Draft<'a> {
 
 /// A patch with its mesh.
 pub(super) struct PatchMesh {
+    /// Parameters of the vertices.
+    pub(super) parameters: Vec<[f64; 2]>,
     pub(super) lifts: Vec<Lift>,
     pub(super) mesh: Triangulation,
     pub(super) stats: FrontStats,
@@ -32,18 +34,24 @@ impl<'a> Draft<'a> {
     /// Triangulates the outline; `points` are those of the model's vertices.
     pub(super) fn new(
         chart: SurfaceChart<'a>,
-        nodes: &[Node],
+        rim: &Rim,
         points: &[Vector],
         name: &str,
     ) -> Result<Self, SurfaceMeshError> {
+        let nodes = &rim.nodes;
         let at: Vec<Point2> = nodes.iter().map(|n| chart.sheet.scaled(n.u, n.v)).collect();
         let count = at.len() as u32;
-        let segment =
-            |i: u32| PlcSegment { vertices: [i, (i + 1) % count], marker: 0, in_loop: true };
+        let segments = rim.loops().flat_map(|range| {
+            let (start, end) = (range.start as u32, range.end as u32);
+            (start..end).map(move |i| {
+                let next = if i + 1 == end { start } else { i + 1 };
+                PlcSegment { vertices: [i, next], marker: 0, in_loop: true }
+            })
+        });
         let plc = Plc {
             points: at,
             point_markers: Vec::new(),
-            segments: (0..count).map(segment).collect(),
+            segments: segments.collect(),
             inside: PlcInside::EvenOdd,
             regions: Vec::new(),
             vertex_of: (0..count).collect(),
@@ -70,7 +78,7 @@ impl<'a> Draft<'a> {
 
     /// The spacing that asks for as many triangles in the plane of (u, v) as are wanted in space.
     fn flat_spacing(&self, p: Point2) -> f64 {
-        let Lift { point, form } = self.chart.sheet.lift(p);
+        let Lift { point, form, .. } = self.chart.sheet.lift(p);
         self.chart.spacing_at(p, point) / form.area().sqrt()
     }
 
@@ -111,7 +119,8 @@ impl<'a> Draft<'a> {
             }
         }
         flips += flip::towards_shape(&mut mesh, &points, &lifts);
-        Ok(PatchMesh { lifts, mesh, stats, flips, moves })
+        let parameters = points.iter().map(|&p| chart.sheet.parameters(p)).collect();
+        Ok(PatchMesh { parameters, lifts, mesh, stats, flips, moves })
     }
 }
 

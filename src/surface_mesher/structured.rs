@@ -2,7 +2,7 @@
 //! measured in space.
 
 use super::lift::Weld;
-use super::outline::{Node, Piece};
+use super::outline::{Node, Piece, Rim};
 use super::{Plan, SurfaceMeshError};
 use crate::metric::FirstForm;
 use crate::model::Model;
@@ -101,10 +101,10 @@ impl<'a> Quarters<'a> {
     pub(super) fn all(
         plan: &'a Plan,
         model: &'a Model,
-        nodes: &[Vec<Node>],
+        rims: &[Rim],
     ) -> Result<Vec<Self>, PatchGridError> {
-        let pieces = plan.outline.pieces.iter().enumerate().zip(nodes);
-        pieces.map(|((i, piece), nodes)| Self::new(i, piece, model, nodes)).collect()
+        let pieces = plan.outline.pieces.iter().enumerate().zip(rims);
+        pieces.map(|((i, piece), rim)| Self::new(i, piece, model, &rim.nodes)).collect()
     }
 
     fn new(
@@ -115,6 +115,9 @@ impl<'a> Quarters<'a> {
     ) -> Result<Self, PatchGridError> {
         let patch = &model.patches[piece.patch];
         let name = || patch.name.clone();
+        if !piece.loops.is_empty() {
+            return Err(PatchGridError::Trimmed { name: name() });
+        }
         if let Some(side) = Side::ALL.iter().find(|&&side| piece.sides[side as usize].is_empty()) {
             return Err(PatchGridError::Pole { name: name(), side: side.name() });
         }
@@ -153,6 +156,9 @@ impl<'a> Quarters<'a> {
         let triangles =
             grid.triangles(&space).map_err(|folded| self.folded(folded, &grid, &space))?;
         let numbers = self.number(&grid, &space, weld);
+        for (&v, place) in numbers.iter().zip(&grid.points) {
+            weld.place(v, [place.x, place.y]);
+        }
         for corners in triangles {
             let corners = corners.map(|v| numbers[v as usize]);
             let [a, b, c] = corners;

@@ -98,7 +98,13 @@ impl VtuWriter<'_, '_> {
                 xml.data_array("Points", 3, count, || mesh.points().flatten())
             })?;
             xml.element(BytesStart::new("Cells"), |xml| xml.cells(mesh))?;
-            xml.element(BytesStart::new("CellData"), |xml| xml.cell_data(mesh))
+            xml.element(BytesStart::new("CellData"), |xml| xml.cell_data(mesh))?;
+            match mesh.parameters() {
+                [] => Ok(()),
+                uv => xml.element(BytesStart::new("PointData"), |xml| {
+                    xml.data_array("uv", 2, 2 * uv.len(), || uv.iter().copied().flatten())
+                }),
+            }
         })
     }
 

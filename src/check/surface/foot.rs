@@ -1,0 +1,339 @@
+//! The nearest points of a model's surfaces.
+//!
+//! Triangles are measured one after the other in runs of fixed length: a foot is searched for from
+//! the foot of a neighbour, which is a step or two away, and from a lattice of points on every patch
+//! only where there is none or where the foot found is too far to be believed.
+
+use super::super::tree3::Tree;
+use crate::mesh::MeshData;
+use crate::metric::{FirstForm, normal};
+use crate::model::Model;
+use crate::surface::{Surface, Tangents};
+use crate::vector::{Vector, add, along, cross, distance, dot, norm, norm_sq, scale, sub, unit};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Points in each direction of the lattice on a patch.
+const LATTICE: u32 = 25;
+/// Most steps to the foot of a sample; two or three are the rule.
+const FOOT_STEPS: usize = 30;
+/// Most times that a step is halved.
+const HALVINGS: u32 = 8;
+/// Lattice points that the foot is searched from.
+const SEEDS: usize = 3;
+/// A vertex on the surface may be off by this fraction of the model's size: rounding.
+pub(super) const ROUNDING: f64 = 1e-9;
+/// Triangles in a run.
+const RUN: usize = 2048;
+/// Slots of the two memories of a run.
+const SLOTS: usize = 4096;
+/// A sample farther from the foot found than this fraction of the longest side is searched for anew.
+const BELIEVED: f64 = 0.25;
+/// Steps shorter than this fraction of the distance do not change it.
+const STEP_OF_DISTANCE: f64 = 1e-3;
+/// Steps shorter than this fraction of the model's size are rounding.
+const STEP_OF_SIZE: f64 = 1e-13;
+
+/// A triangle against its surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    pub(super) triangle: u32,
+    pub(super) chord_error: f64,
+    pub(super) vertex_error: f64,
+    /// Piece of the model that the centre's foot lies on.
+    pub(super) piece: usize,
+    /// Cosine between the normals; `None` where one of them has no direction.
+    pub(super) cosine: Option<f64>,
+}
+
+impl Measured {
+    /// Angle between the lines of the normals.
+    pub(super) fn turn_deg(&self) -> f64 {
+        libm::acos(self.cosine.unwrap_or(1.0).abs().clamp(0.0, 1.0)).to_degrees()
+    }
+}
+
+/// The smooth pieces of a model, each with its marker, and lattices on them.
+pub(super) struct Sheets {
+    pieces: Vec<(Surface, i32)>,
+    /// A tree of lattice points for each marker.
+    trees: BTreeMap<i32, Tree<Seed>>,
+    /// One for all, where the mesh has triangles without a marker of the model.
+    all: Option<Tree<Seed>>,
+    /// Largest chord error allowed, if any.
+    limit: Option<f64>,
+    pub(super) size: f64,
+}
+
+/// A place on a piece.
+#[derive(Clone, Copy, Debug)]
+struct Seed {
+    piece: usize,
+    at: [f64; 2],
+}
+
+/// The nearest point of a surface.
+#[derive(Clone, Copy, Debug)]
+struct Foot {
+    seed: Seed,
+    distance: f64,
+    normal: Option<Vector>,
+}
+
+impl Sheets {
+    pub(super) fn new(model: &Model, mesh: &MeshData, limit: Option<f64>) -> Self {
+        let mut pieces = Vec::new();
+        for patch in &model.patches {
+            pieces.extend(patch.surface.pieces().into_iter().map(|piece| (piece, patch.marker)));
+        }
+        let mut lists: BTreeMap<i32, Vec<(Vector, Seed)>> = BTreeMap::new();
+        for (i, (piece, marker)) in pieces.iter().enumerate() {
+            lists.entry(*marker).or_default().extend(lattice(i, piece));
+        }
+        let is_known = |t: usize| mesh.regions.get(t).is_some_and(|m| lists.contains_key(m));
+        let needs_all = !(0..mesh.triangles.len()).all(is_known);
+        let every = || lists.values().flatten().copied().collect();
+        let size = diagonal(lists.values().flatten().map(|(p, _)| *p));
+        let all = needs_all.then(|| Tree::new(every()));
+        let trees = lists.into_iter().map(|(marker, list)| (marker, Tree::new(list))).collect();
+        Self { pieces, trees, all, limit, size }
+    }
+
+    /// Measures all triangles, in their order; the same for any number of threads.
+    pub(super) fn measure(&self, mesh: &MeshData) -> Vec<Measured> {
+        let count = mesh.triangles.len();
+        let run = |first: usize| {
+            let mut walk = Walk::new(self, mesh);
+            (first..(first + RUN).min(count)).filter_map(|t| walk.measure(t)).collect()
+        };
+        let runs: Vec<Vec<Measured>> =
+            (0..count.div_ceil(RUN)).into_par_iter().map(|i| run(i * RUN)).collect();
+        runs.concat()
+    }
+
+    /// Lattice points for a triangle's marker, and whether a piece is one of theirs.
+    fn candidates(&self, marker: Option<i32>) -> Option<(&Tree<Seed>, Option<i32>)> {
+        match marker.and_then(|m| Some((self.trees.get(&m)?, m))) {
+            Some((tree, marker)) => Some((tree, Some(marker))),
+            None => self.all.as_ref().map(|tree| (tree, None)),
+        }
+    }
+
+    /// The nearest point of the surface, from the nearest lattice points.
+    fn foot(&self, tree: &Tree<Seed>, p: Vector) -> Foot {
+        let none = Seed { piece: 0, at: [0.0; 2] };
+        let mut best = Foot { seed: none, distance: f64::INFINITY, normal: None };
+        for (_, seed) in tree.nearest(p, SEEDS) {
+            let foot = self.foot_from(seed, p);
+            if foot.distance < best.distance {
+                best = foot;
+            }
+        }
+        best
+    }
+
+    /// Gauss and Newton's steps, kept in the rectangle of parameters; a step that leads farther away
+    /// is halved.
+    fn foot_from(&self, seed: Seed, p: Vector) -> Foot {
+        let surface = &self.pieces[seed.piece].0;
+        let domain = surface.domain();
+        let mut at = seed.at;
+        let mut tangents = surface.tangents(at[0], at[1]);
+        let mut nearest = distance(p, tangents.point);
+        for _ in 0..FOOT_STEPS {
+            let step = foot_step(&tangents, sub(p, tangents.point), at, domain);
+            let place = clamped([at[0] + step[0], at[1] + step[1]], domain);
+            let (du, dv) = (place[0] - at[0], place[1] - at[1]);
+            let moved = norm(along(scale(du, tangents.u), dv, tangents.v));
+            if moved <= STEP_OF_DISTANCE * nearest || moved <= STEP_OF_SIZE * self.size {
+                break;
+            }
+            let closer = (0..HALVINGS).find_map(|halvings| {
+                let part = 1.0 / f64::from(1_u32 << halvings);
+                let place = clamped([at[0] + part * step[0], at[1] + part * step[1]], domain);
+                let there = surface.tangents(place[0], place[1]);
+                // A pole has no way on: all directions but one are the same point.
+                (distance(p, there.point) < nearest && normal(&there).is_some())
+                    .then_some((place, there))
+            });
+            let Some((place, there)) = closer else { break };
+            (at, tangents, nearest) = (place, there, distance(p, there.point));
+        }
+        let seed = Seed { piece: seed.piece, at };
+        Foot { seed, distance: nearest, normal: normal(&tangents) }
+    }
+}
+
+/// Triangles one after the other, and what is remembered of those before.
+struct Walk<'a> {
+    sheets: &'a Sheets,
+    mesh: &'a MeshData,
+    /// Feet of vertices, at the slots of their numbers.
+    feet: Vec<(u32, Foot)>,
+    /// Distances of the middles of edges, at the slots of their ends.
+    middles: Vec<([u32; 2], Option<i32>, f64)>,
+}
+
+/// What a triangle may be measured against, and how far is too far.
+struct Against<'a> {
+    tree: &'a Tree<Seed>,
+    marker: Option<i32>,
+    believed: f64,
+}
+
+impl<'a> Walk<'a> {
+    fn new(sheets: &'a Sheets, mesh: &'a MeshData) -> Self {
+        let nowhere = Seed { piece: 0, at: [0.0; 2] };
+        let none = Foot { seed: nowhere, distance: f64::INFINITY, normal: None };
+        let feet = vec![(u32::MAX, none); SLOTS];
+        Self { sheets, mesh, feet, middles: vec![([u32::MAX; 2], None, 0.0); SLOTS] }
+    }
+
+    fn measure(&mut self, t: usize) -> Option<Measured> {
+        let vertices = self.mesh.triangles[t];
+        let corners = vertices.map(|v| self.mesh.points.get(v as usize).copied());
+        let [a, b, c] = [corners[0]?, corners[1]?, corners[2]?];
+        let (tree, marker) = self.sheets.candidates(self.mesh.regions.get(t).copied())?;
+        let longest_sq =
+            [sub(b, a), sub(c, b), sub(a, c)].map(norm_sq).into_iter().fold(0.0, f64::max);
+        let believed = BELIEVED * longest_sq.sqrt();
+        let against =
+            Against { tree, marker, believed: believed.min(self.sheets.limit.unwrap_or(believed)) };
+        let feet = self.corners(&against, vertices, [a, b, c]);
+        let near = self.between(feet);
+        let centre = self.sample(&against, near, scale(1.0 / 3.0, add(a, add(b, c))));
+        let mut chord_error = centre.distance;
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let middle = scale(0.5, add([a, b, c][i], [a, b, c][j]));
+            let ends = [vertices[i].min(vertices[j]), vertices[i].max(vertices[j])];
+            chord_error = chord_error.max(self.middle(&against, ends, [feet[i], feet[j]], middle));
+        }
+        let up = unit(cross(sub(b, a), sub(c, a)));
+        Some(Measured {
+            triangle: t as u32,
+            chord_error,
+            vertex_error: feet.iter().map(|foot| foot.distance).fold(0.0, f64::max),
+            piece: centre.seed.piece,
+            cosine: up.zip(centre.normal).map(|(up, normal)| dot(up, normal)),
+        })
+    }
+
+    /// The feet of a triangle's corners: those known, then the others from one of them.
+    fn corners(&mut self, against: &Against<'_>, vertices: [u32; 3], at: [Vector; 3]) -> [Foot; 3] {
+        let known = vertices.map(|v| self.known(against, v));
+        let near = known.into_iter().flatten().next();
+        std::array::from_fn(|i| {
+            known[i].unwrap_or_else(|| {
+                let rounding = ROUNDING * self.sheets.size;
+                let found = near.map(|near| self.sheets.foot_from(near.seed, at[i]));
+                let foot = match found {
+                    Some(foot) if foot.distance <= rounding => foot,
+                    found => nearer(found, self.sheets.foot(against.tree, at[i])),
+                };
+                self.feet[vertices[i] as usize % SLOTS] = (vertices[i], foot);
+                foot
+            })
+        })
+    }
+
+    fn known(&self, against: &Against<'_>, v: u32) -> Option<Foot> {
+        let (vertex, foot) = self.feet[v as usize % SLOTS];
+        let fits = |marker| self.sheets.pieces[foot.seed.piece].1 == marker;
+        (vertex == v && against.marker.is_none_or(fits)).then_some(foot)
+    }
+
+    /// The mean of places on one piece.
+    fn between<const N: usize>(&self, feet: [Foot; N]) -> Option<Seed> {
+        let piece = feet[0].seed.piece;
+        let mean = |i: usize| feet.iter().map(|foot| foot.seed.at[i]).sum::<f64>() / N as f64;
+        let same = feet.iter().all(|foot| foot.seed.piece == piece);
+        same.then(|| Seed { piece, at: [mean(0), mean(1)] })
+    }
+
+    /// The foot of a sample from a place near it, and from the lattice where that is not believed.
+    fn sample(&self, against: &Against<'_>, near: Option<Seed>, p: Vector) -> Foot {
+        match near.map(|near| self.sheets.foot_from(near, p)) {
+            Some(foot) if foot.distance <= against.believed && self.is_inside(&foot) => foot,
+            found => nearer(found, self.sheets.foot(against.tree, p)),
+        }
+    }
+
+    /// Whether a foot lies inside its piece: on a side the search may have stopped short of a nearer
+    /// one on the next piece.
+    fn is_inside(&self, foot: &Foot) -> bool {
+        let domain = self.sheets.pieces[foot.seed.piece].0.domain();
+        (0..2).all(|i| foot.seed.at[i] > domain[i][0] && foot.seed.at[i] < domain[i][1])
+    }
+
+    /// Distance of the middle of an edge, which two triangles ask for.
+    fn middle(
+        &mut self,
+        against: &Against<'_>,
+        ends: [u32; 2],
+        feet: [Foot; 2],
+        at: Vector,
+    ) -> f64 {
+        let slot = (ends[0].wrapping_mul(0x9E37_79B1) ^ ends[1]) as usize % SLOTS;
+        let (known, marker, distance) = self.middles[slot];
+        if known == ends && marker == against.marker {
+            return distance;
+        }
+        let distance = self.sample(against, self.between(feet), at).distance;
+        self.middles[slot] = (ends, against.marker, distance);
+        distance
+    }
+}
+
+fn nearer(found: Option<Foot>, other: Foot) -> Foot {
+    found.filter(|found| found.distance <= other.distance).unwrap_or(other)
+}
+
+fn clamped([u, v]: [f64; 2], [[u0, u1], [v0, v1]]: [[f64; 2]; 2]) -> [f64; 2] {
+    [u.clamp(u0, u1), v.clamp(v0, v1)]
+}
+
+/// Newton's step towards the foot in the tangent plane. On a side of the rectangle that the step
+/// would leave, and where the map is singular, the step is the best one along the other parameter.
+fn foot_step(tangents: &Tangents, gap: Vector, at: [f64; 2], domain: [[f64; 2]; 2]) -> [f64; 2] {
+    let FirstForm { e, f, g } = FirstForm::new(tangents);
+    let (du, dv) = (dot(gap, tangents.u), dot(gap, tangents.v));
+    let determinant = e * g - f * f;
+    let step = [(g * du - f * dv) / determinant, (e * dv - f * du) / determinant];
+    let alone = |d: f64, length_sq: f64| if length_sq > 0.0 { d / length_sq } else { 0.0 };
+    if determinant <= 1e-24 * e * g || !step.iter().all(|x| x.is_finite()) {
+        return [alone(du, e), alone(dv, g)];
+    }
+    let leaves = |i: usize| {
+        (at[i] <= domain[i][0] && step[i] < 0.0) || (at[i] >= domain[i][1] && step[i] > 0.0)
+    };
+    match (leaves(0), leaves(1)) {
+        (false, false) => step,
+        (true, false) => [0.0, alone(dv, g)],
+        (false, true) => [alone(du, e), 0.0],
+        (true, true) => [alone(du, e), alone(dv, g)],
+    }
+}
+
+/// The centres of equal rectangles: never on a side, since all parameters of a pole are one point
+/// and most of them lead away from the foot.
+fn lattice(piece: usize, surface: &Surface) -> impl Iterator<Item = (Vector, Seed)> + '_ {
+    let [[u0, u1], [v0, v1]] = surface.domain();
+    let step = |i: u32| (f64::from(i) + 0.5) / f64::from(LATTICE);
+    (0..LATTICE.pow(2)).map(move |k| {
+        let (i, j) = (k % LATTICE, k / LATTICE);
+        let at = [u0 + step(i) * (u1 - u0), v0 + step(j) * (v1 - v0)];
+        (surface.at(at[0], at[1]), Seed { piece, at })
+    })
+}
+
+/// Diagonal of the box around points.
+fn diagonal(points: impl Iterator<Item = Vector>) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in points {
+        for i in 0..3 {
+            (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i]));
+        }
+    }
+    let diagonal = distance(low, high);
+    if diagonal.is_finite() { diagonal } else { 0.0 }
+}
