@@ -118,7 +118,7 @@ fn a_plane_domain_may_have_curved_loops() {
 fn sphere_and_fold(folder: &Path) -> [String; 2] {
     let sound = folder.join("sound.off");
     let arguments = ["mesh", &example("sphere.json"), "--spacing", "0.3", "-o", &text(&sound)];
-    assert_exit(&trigrade(&arguments), 0);
+    assert_exit(&run(&arguments), 0);
     let mesh = std::fs::read_to_string(&sound).expect("an OFF file");
     let line = mesh.lines().rev().nth(20).expect("a triangle").to_owned();
     let [three, a, b, c] = line.split_whitespace().collect::<Vec<_>>()[..] else {
@@ -149,7 +149,7 @@ fn findings_against_a_model_are_in_every_form_of_report() {
         let report = format!("{form}={}", text(&file));
         let told = |mesh: &str, exit| {
             let arguments = ["check", mesh, "--surface", &model, "--report", &report];
-            assert_exit(&trigrade(&arguments), exit);
+            assert_exit(&run(&arguments), exit);
             std::fs::read_to_string(&file).expect("the report")
         };
         let found = told(&folded, 1);
@@ -157,15 +157,15 @@ fn findings_against_a_model_are_in_every_form_of_report() {
         assert!(!told(&sound, 0).contains(failed), "{form}");
     }
     let strict = ["check", &sound, "--surface", &model, "--chord-error", "1e-6", "--json"];
-    let output = trigrade(&strict);
+    let output = run(&strict);
     assert_exit(&output, 1);
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let counts = json["counts"].as_array().expect("counts");
     assert_eq!((counts.len(), &counts[0]["id"]), (1, &Value::from("S8")), "{counts:?}");
     assert!(counts[0]["count"].as_u64() > counts[0]["listed"].as_u64(), "all are counted");
     let allowed = [&strict[..6], &["--allow", "S8"]].concat();
-    assert_exit(&trigrade(&allowed), 0);
-    let plain = trigrade(&["check", &sound, "--json"]);
+    assert_exit(&run(&allowed), 0);
+    let plain = run(&["check", &sound, "--json"]);
     let json: Value = serde_json::from_slice(&plain.stdout).expect("JSON");
     let skipped = json["not_checked"].as_array().expect("a list").iter().map(|e| &e["id"]);
     assert_eq!(skipped.filter(|id| id.as_str().is_some_and(|id| id.starts_with('S'))).count(), 4);
@@ -179,19 +179,19 @@ fn certificates_name_the_model_and_the_limits() {
     let (mesh, paper) = (file("a.msh"), file("a.cert.json"));
     let (model, other) = (example("sphere.json"), example("torus.json"));
     let made = ["mesh", &model, "--spacing", "0.3", "-o", &mesh, "--certificate", &paper];
-    assert_exit(&trigrade(&made), 0);
+    assert_exit(&run(&made), 0);
     let confirm = ["check", &mesh, "--surface", &model, "--verify-certificate", &paper];
-    assert!(assert_exit(&trigrade(&confirm), 0).contains("confirmed"));
-    let told = assert_exit(&trigrade(&["check", &mesh, "--verify-certificate", &paper]), 1);
+    assert!(assert_exit(&run(&confirm), 0).contains("confirmed"));
+    let told = assert_exit(&run(&["check", &mesh, "--verify-certificate", &paper]), 1);
     assert!(told.contains("with a surface model"), "{told}");
     let wrong = ["check", &mesh, "--surface", &other, "--verify-certificate", &paper];
-    assert!(assert_exit(&trigrade(&wrong), 1).contains("model is another file"));
+    assert!(assert_exit(&run(&wrong), 1).contains("model is another file"));
     let strict =
         ["check", &mesh, "--surface", &model, "--chord-error", "0.1", "--certificate", &paper];
-    assert_exit(&trigrade(&strict), 0);
+    assert_exit(&run(&strict), 0);
     let json: Value = serde_json::from_slice(&std::fs::read(&paper).expect("there")).expect("JSON");
     assert_eq!(json["surface"]["limits"]["chord_error"], 0.1);
-    assert_exit(&trigrade(&confirm), 0);
+    assert_exit(&run(&confirm), 0);
 }
 
 // spec: X60 X62
@@ -201,11 +201,10 @@ fn bezier_patch_files_are_models() {
     let (patches, mesh) = (folder.path().join("two.bpt"), text(&folder.path().join("a.off")));
     let two = "2\n1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1 1\n1 0 0\n1 1 0\n2 0 1\n2 1 1\n";
     std::fs::write(&patches, two).expect("written");
-    let told =
-        assert_exit(&trigrade(&["mesh", &text(&patches), "--spacing", "0.2", "-o", &mesh]), 0);
+    let told = assert_exit(&run(&["mesh", &text(&patches), "--spacing", "0.2", "-o", &mesh]), 0);
     assert!(told.contains("2 smooth patches between 7 curves"), "{told}");
-    assert_exit(&trigrade(&["check", &mesh, "--surface", &text(&patches)]), 0);
+    assert_exit(&run(&["check", &mesh, "--surface", &text(&patches)]), 0);
     std::fs::write(&patches, two.replace("2 1 1\n", "")).expect("written");
-    let told = assert_exit(&trigrade(&["mesh", &text(&patches), "-o", &mesh]), 2);
+    let told = assert_exit(&run(&["mesh", &text(&patches), "-o", &mesh]), 2);
     assert!(told.contains("two.bpt:11") && told.contains("control point"), "{told}");
 }
