@@ -48,10 +48,21 @@ fn sound(name: &str, model: &Model, mesh: &MeshData) -> [f64; 3] {
     [ratio.mean, ratio.percentile_99, ratio.max].map(|x| x.expect("finite"))
 }
 
+// spec: U13
+#[test]
+fn what_it_cannot_mesh_is_refused_by_name() {
+    let told = |name| run(&example(name), SurfaceMethod::Direct).expect_err(name).to_string();
+    assert!(told("trimmed").contains("the front in space takes whole patches only"));
+    // Knob and spout of the pot shrink to points that its front does not close around.
+    let teapot = told("teapot");
+    assert!(teapot.contains("did not close") && teapot.contains("patch knob"), "{teapot}");
+}
+
 // spec: U11 U12 U13 U14
 #[test]
 fn the_examples_close_and_are_as_good_as_by_parameters() {
-    for (name, model) in examples() {
+    let whole = |name: &str| !["teapot", "trimmed"].contains(&name);
+    for (name, model) in examples().into_iter().filter(|(name, _)| whole(name)) {
         let space = run(&model, SurfaceMethod::Direct).unwrap_or_else(|e| panic!("{name}: {e}"));
         let flat = run(&model, SurfaceMethod::Front).expect("a mesh");
         let [direct, usual] = [&space, &flat].map(|m| sound(&name, &model, &m.mesh));
