@@ -208,3 +208,11 @@ fn bezier_patch_files_are_models() {
     let told = assert_exit(&run(&["mesh", &text(&patches), "-o", &mesh]), 2);
     assert!(told.contains("two.bpt:11") && told.contains("control point"), "{told}");
 }
+
+// spec: K11 S8 S9
+#[test]
+fn a_form_without_regions_is_checked_against_all_patches() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let mesh = text(&folder.path().join("teapot.stl"));
+    assert_exit(&run(&["mesh", &example("teapot.json"), "-o", &mesh]), 0);
+}

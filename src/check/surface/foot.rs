@@ -21,6 +21,9 @@ const FOOT_STEPS: usize = 30;
 const HALVINGS: u32 = 8;
 /// Lattice points that the foot is searched from.
 const SEEDS: usize = 3;
+/// As many for a vertex that those few do not show to lie on the surface: where patches cross or
+/// touch, the nearest lattice points may all be on the wrong one.
+const SEEDS_OF_VERTEX: usize = 60;
 /// A vertex on the surface may be off by this fraction of the model's size: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Triangles in a run.
@@ -120,10 +123,10 @@ impl Sheets {
     }
 
     /// The nearest point of the surface, from the nearest lattice points.
-    fn foot(&self, tree: &Tree<Seed>, p: Vector) -> Foot {
+    fn foot(&self, tree: &Tree<Seed>, p: Vector, seeds: usize) -> Foot {
         let none = Seed { piece: 0, at: [0.0; 2] };
         let mut best = Foot { seed: none, distance: f64::INFINITY, normal: None };
-        for (_, seed) in tree.nearest(p, SEEDS) {
+        for (_, seed) in tree.nearest(p, seeds) {
             let foot = self.foot_from(seed, p);
             if foot.distance < best.distance {
                 best = foot;
@@ -200,8 +203,8 @@ impl<'a> Walk<'a> {
         let against =
             Against { tree, marker, believed: believed.min(self.sheets.limit.unwrap_or(believed)) };
         let feet = self.corners(&against, vertices, [a, b, c]);
-        let near = self.between(feet);
-        let centre = self.sample(&against, near, scale(1.0 / 3.0, add(a, add(b, c))));
+        let near = Self::between(feet);
+        let centre = self.sample(&against, &near, scale(1.0 / 3.0, add(a, add(b, c))));
         let mut chord_error = centre.distance;
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let middle = scale(0.5, add([a, b, c][i], [a, b, c][j]));
@@ -226,10 +229,11 @@ impl<'a> Walk<'a> {
             known[i].unwrap_or_else(|| {
                 let rounding = ROUNDING * self.sheets.size;
                 let found = near.map(|near| self.sheets.foot_from(near.seed, at[i]));
-                let foot = match found {
-                    Some(foot) if foot.distance <= rounding => foot,
-                    found => nearer(found, self.sheets.foot(against.tree, at[i])),
-                };
+                let is_on = |foot: &Foot| foot.distance <= rounding;
+                let search = |seeds| self.sheets.foot(against.tree, at[i], seeds);
+                let few = || Some(search(SEEDS)).filter(is_on);
+                let foot = found.filter(is_on).or_else(few);
+                let foot = foot.unwrap_or_else(|| nearer(found, search(SEEDS_OF_VERTEX)));
                 self.feet[vertices[i] as usize % SLOTS] = (vertices[i], foot);
                 foot
             })
@@ -242,19 +246,25 @@ impl<'a> Walk<'a> {
         (vertex == v && against.marker.is_none_or(fits)).then_some(foot)
     }
 
-    /// The mean of places on one piece.
-    fn between<const N: usize>(&self, feet: [Foot; N]) -> Option<Seed> {
+    /// The mean of places on one piece; of places on several pieces, all: one of them is on the piece
+    /// that the triangle belongs to.
+    fn between<const N: usize>(feet: [Foot; N]) -> Vec<Seed> {
         let piece = feet[0].seed.piece;
         let mean = |i: usize| feet.iter().map(|foot| foot.seed.at[i]).sum::<f64>() / N as f64;
-        let same = feet.iter().all(|foot| foot.seed.piece == piece);
-        same.then(|| Seed { piece, at: [mean(0), mean(1)] })
+        match feet.iter().all(|foot| foot.seed.piece == piece) {
+            true => vec![Seed { piece, at: [mean(0), mean(1)] }],
+            false => feet.iter().map(|foot| foot.seed).collect(),
+        }
     }
 
-    /// The foot of a sample from a place near it, and from the lattice where that is not believed.
-    fn sample(&self, against: &Against<'_>, near: Option<Seed>, p: Vector) -> Foot {
-        match near.map(|near| self.sheets.foot_from(near, p)) {
+    /// The foot of a sample from places near it, and from the lattice where that is not believed.
+    fn sample(&self, against: &Against<'_>, near: &[Seed], p: Vector) -> Foot {
+        let feet = near.iter().map(|&near| self.sheets.foot_from(near, p));
+        let found =
+            feet.reduce(|best, foot| if foot.distance < best.distance { foot } else { best });
+        match found {
             Some(foot) if foot.distance <= against.believed && self.is_inside(&foot) => foot,
-            found => nearer(found, self.sheets.foot(against.tree, p)),
+            found => nearer(found, self.sheets.foot(against.tree, p, SEEDS)),
         }
     }
 
@@ -278,7 +288,7 @@ impl<'a> Walk<'a> {
         if known == ends && marker == against.marker {
             return distance;
         }
-        let distance = self.sample(against, self.between(feet), at).distance;
+        let distance = self.sample(against, &Self::between(feet), at).distance;
         self.middles[slot] = (ends, against.marker, distance);
         distance
     }
