@@ -152,7 +152,7 @@ mod tests {
             (ONE, r#""degree_u": 1, "#, "", "degree_u"),
             (ONE, "[0, 0, 1, 1], \"knots_v", "[0, 0, 1], \"knots_v", "knots"),
             (ONE, "[1, 1, 2, 3]", "[1, 1]", "$.control_points[1][1]"),
-            (ONE, ", [0, 1, 0, 1]]", "]", "$.control_points"),
+            (ONE, ", [0, 1, 0, 1]]", "]", "row 1 of the control net"),
             (ONE, "[1, 1, 2, 3]", "[1, 1, 2, 0]", "weight"),
             (EXPORTED, r#""surface""#, r#""curve""#, "$.shape.type"),
             (EXPORTED, r#""size_u": 2"#, r#""size_u": 3"#, "4 control points, but there must be 6"),

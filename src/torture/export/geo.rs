@@ -1,5 +1,6 @@
 //! Gmsh's `.geo` script: points, lines, curve loops, plane surfaces; constraints are embedded.
 
+use super::isolated;
 use super::nesting::levels;
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
@@ -33,9 +34,16 @@ pub fn write(domain: &Domain) -> Result<String, ExportError> {
         surfaces.push(i + 1);
         say(format_args!("Plane Surface({}) = {{{loops}}};\n", i + 1));
     }
-    // The format wants the surface that an embedded line lies in: with one surface it is that.
-    if !domain.segments.is_empty() && surfaces.len() > 1 {
-        return Err(BoundaryForm::Geo.cannot_say("segments without naming their surface"));
+    let alone = isolated(domain);
+    // The format wants the surface that an embedded line or point lies in: with one surface it is
+    // that.
+    if surfaces.len() > 1 && !(domain.segments.is_empty() && alone.is_empty()) {
+        let what = "segments and points without naming their surface";
+        return Err(BoundaryForm::Geo.cannot_say(what));
+    }
+    if !alone.is_empty() {
+        let points = list(alone.into_iter().map(|v| v + 1));
+        say(format_args!("Point{{{points}}} In Surface{{{}}};\n", list(surfaces.iter().copied())));
     }
     if !domain.segments.is_empty() {
         let lines = list(line..line + domain.segments.len());

@@ -3,6 +3,7 @@
 use super::*;
 use crate::domain::validate::validate;
 use crate::format::domain_file::{DomainForm, ReadOptions, read_domain};
+use crate::point::Point2;
 use crate::torture::generate::{Case, Claim, case};
 
 fn valid(count: u64) -> impl Iterator<Item = Case> {
@@ -96,6 +97,17 @@ fn a_plate_with_a_hole_in_every_format() {
         Inside::EvenOdd => panic!("Triangle's rule"),
     };
     assert!(hole.x > 1.0 && hole.y > 1.0 && hole.x + hole.y < 3.0, "{hole}");
+}
+
+// spec: R5
+#[test]
+fn gmsh_is_told_to_keep_isolated_points() {
+    let mut whole = plate();
+    let number = whole.points.len() + 1;
+    whole.points.push(Point2::new(3.5, 3.0));
+    let bytes = export(&whole, BoundaryForm::Geo).expect("expressible");
+    let text = String::from_utf8(bytes).expect("text");
+    assert!(text.contains(&format!("Point{{{number}}} In Surface{{1}};")), "{text}");
 }
 
 // spec: R5
