@@ -52,6 +52,15 @@ fn our_own_mesher_passes_some_hundred_cases() {
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 
+// spec: R10
+#[test]
+fn what_a_long_run_found_stays_mended() {
+    // A new vertex in the middle of an edge that subnormal numbers cannot hold.
+    let case = case(12, 4380);
+    let judgement = verdict(&case);
+    assert!(!judgement.class.is_failure(), "{} {}", case.family, judgement.reason);
+}
+
 /// The long run: `cargo test --release --test torture -- --ignored --nocapture`. The environment
 /// variables TRIGRADE_TORTURE_CASES and TRIGRADE_TORTURE_SEED change its size and seed.
 #[test]

@@ -109,7 +109,7 @@ impl Searcher {
         let mut least = f64::INFINITY;
         for &change in &self.changes {
             self.trial.assign(&self.base);
-            if !self.trial.make(change) {
+            if !self.trial.make(change, quantum) {
                 continue;
             }
             goal.tried += 1;

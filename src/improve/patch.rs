@@ -135,13 +135,13 @@ impl Patch {
         }
     }
 
-    /// Makes a change; `false` when it cannot be made.
-    pub(super) fn make(&mut self, change: Change) -> bool {
+    /// Makes a change; `false` when it cannot be made. New coordinates are multiples of the quantum.
+    pub(super) fn make(&mut self, change: Change, quantum: Option<f64>) -> bool {
         self.touched.clear();
         match change {
             Change::Flip(a, b) => self.edge(a, b).is_some_and(|e| self.flip(e)),
             Change::Remove(v) => self.remove(v),
-            Change::Split(a, b) => self.edge(a, b).is_some_and(|e| self.split(e)),
+            Change::Split(a, b) => self.edge(a, b).is_some_and(|e| self.split(e, quantum)),
         }
     }
 
@@ -215,11 +215,12 @@ impl Patch {
         convex
     }
 
-    fn split(&mut self, e: HalfEdgeId) -> bool {
+    fn split(&mut self, e: HalfEdgeId, quantum: Option<f64>) -> bool {
         let Some(f) = self.mesh.twin(e) else { return false };
         let [a, b] = [self.mesh.origin(e), self.mesh.dest(e)];
         let [p, q] = [a, b].map(|v| self.points[v.index()]);
         let middle = Point2::new(0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y);
+        let middle = quantum.map_or(middle, |quantum| middle.rounded_to(quantum));
         let hull: [HalfEdgeId; 4] = [e.next(), e.prev(), f.next(), f.prev()];
         let ends = hull.map(|h| [self.mesh.origin(h), self.mesh.dest(h)]);
         let m = VertexId(self.points.len() as u32);
