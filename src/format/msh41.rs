@@ -275,9 +275,9 @@ impl Out<'_, '_> {
 
     /// Elements keep their order: a new block starts wherever the marker or region changes.
     fn elements(&mut self, mesh: MeshView, groups: &Groups) -> io::Result<()> {
-        let edges = mesh.edges().chunk_by(|a, b| a.marker == b.marker);
+        let edges: Vec<_> = mesh.edges().chunk_by(|a, b| a.marker == b.marker).collect();
         let triangles = triangle_runs(mesh);
-        let blocks = edges.clone().count() + triangles.len();
+        let blocks = edges.len() + triangles.len();
         let count = (mesh.edges().len() + mesh.triangles().len()) as i64;
         self.out.text("$Elements\n")?;
         self.head(blocks as i64, count)?;
