@@ -205,6 +205,18 @@ impl Domain {
         let loops = self.loops.iter().flat_map(Loop::edges);
         loops.chain(self.segments.iter().map(|s| s.vertices))
     }
+
+    /// Indices of the points that no edge uses, in rising order.
+    #[must_use]
+    pub fn isolated_points(&self) -> Vec<usize> {
+        let mut is_used = vec![false; self.points.len()];
+        for v in self.edges().flatten() {
+            if let Some(used) = is_used.get_mut(v as usize) {
+                *used = true;
+            }
+        }
+        (0..is_used.len()).filter(|&v| !is_used[v]).collect()
+    }
 }
 
 impl Loop {

@@ -14,12 +14,13 @@ mod smooth;
 mod tests;
 
 pub use fold::faces;
+pub(crate) use fold::shape;
 pub use link::{BadEdge, linked};
 pub use pass::{Effort, Passes, TooManyVertices};
 
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 use crate::vector::{Vector, add, cross, distance, scale, sub, unit};
-use fold::{is_kept, shape};
+use fold::is_kept;
 
 /// The surface that a skin lies on.
 pub trait Ground: Sync {

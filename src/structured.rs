@@ -13,7 +13,8 @@ pub use winslow::{Relaxed, relax};
 use crate::metric::FirstForm;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
-use crate::vector::{Vector, cross, dot, norm, sub};
+use crate::skin::shape;
+use crate::vector::Vector;
 
 /// The points of a grid of `columns` x `rows` cells, row by row from the south.
 #[derive(Clone, Debug, PartialEq)]
@@ -206,13 +207,6 @@ impl Grid {
         };
         Some(chosen.map(|t| t.map(|v| v as u32)))
     }
-}
-
-/// Inverse mean ratio turned round: 1 for the equilateral triangle, 0 for one without area.
-fn shape([a, b, c]: [Vector; 3]) -> f64 {
-    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
-    let area = 0.5 * norm(cross(ab, ca));
-    4.0 * 3.0_f64.sqrt() * area / (dot(ab, ab) + dot(bc, bc) + dot(ca, ca))
 }
 
 #[cfg(test)]

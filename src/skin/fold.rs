@@ -30,7 +30,7 @@ pub(super) fn is_kept(corners: [Vector; 3], facing: Vector) -> bool {
 }
 
 /// 1 for the equilateral triangle, 0 for one without area.
-pub(super) fn shape([a, b, c]: [Vector; 3]) -> f64 {
+pub(crate) fn shape([a, b, c]: [Vector; 3]) -> f64 {
     let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
     let edges = norm_sq(ab) + norm_sq(bc) + norm_sq(ca);
     let twice = norm(cross(ab, ca));

@@ -6,6 +6,7 @@ use super::trim::{Cut, Loops, holds, turn};
 use crate::curve::Curve;
 use crate::curve::discretize::{self, Track, nodes};
 use crate::model::{Model, Patch, Trim, TrimCurve};
+use crate::predicates::Sign;
 use crate::surface::{Line, Side, Surface, Trace};
 use crate::vector::{Vector, distance, key};
 use std::collections::BTreeMap;
@@ -327,7 +328,7 @@ impl Outline {
         for (i, cuts) in loops.iter().enumerate() {
             let mut nodes = all.nodes(cuts)?;
             let is_hole = i > 0 || !piece.has_outline;
-            let forward = (turn(&nodes) > 0.0) != is_hole;
+            let forward = (turn(&nodes) == Sign::Positive) != is_hole;
             if !forward {
                 nodes.reverse();
             }

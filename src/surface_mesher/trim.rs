@@ -6,6 +6,7 @@
 use super::outline::{Node, Shared};
 use crate::curve::Curve;
 use crate::curve::discretize::Track;
+use crate::domain::validate::loop_orientation;
 use crate::metric::FirstForm;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
@@ -176,16 +177,11 @@ fn newton(tangents: &Tangents, p: Vector) -> [f64; 2] {
     if step.iter().all(|x| x.is_finite()) { step } else { [alone(du, e), alone(dv, g)] }
 }
 
-/// Twice the area that a loop encloses in (u, v), positive when it runs counterclockwise: a float
-/// that only says which way a loop without crossings runs.
-pub(super) fn turn(nodes: &[Node]) -> f64 {
-    let next = |i: usize| nodes[(i + 1) % nodes.len()];
-    let (u, v) = (nodes[0].u, nodes[0].v);
-    let part = |(i, a): (usize, &Node)| {
-        let b = next(i);
-        (a.u - u) * (b.v - v) - (b.u - u) * (a.v - v)
-    };
-    nodes.iter().enumerate().map(part).sum()
+/// Which way a loop without crossings runs in (u, v), exactly.
+pub(super) fn turn(nodes: &[Node]) -> Sign {
+    let points: Vec<Point2> = nodes.iter().map(|node| Point2::new(node.u, node.v)).collect();
+    let all: Vec<u32> = (0..points.len() as u32).collect();
+    loop_orientation(&points, &all)
 }
 
 /// Whether a point lies strictly inside a loop, exactly.

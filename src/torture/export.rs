@@ -135,13 +135,6 @@ pub fn export(domain: &Domain, form: BoundaryForm) -> Result<Vec<u8>, ExportErro
     Ok(out)
 }
 
-/// Points that no edge uses.
-fn isolated(domain: &Domain) -> Vec<usize> {
-    let mut used = vec![false; domain.points.len()];
-    domain.edges().flatten().for_each(|v| used[v as usize] = true);
-    (0..used.len()).filter(|&v| !used[v]).collect()
-}
-
 fn refused(error: impl std::fmt::Display) -> ExportError {
     ExportError::Write(error.to_string())
 }

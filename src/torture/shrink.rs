@@ -17,8 +17,8 @@ use super::judge::Judgement;
 use crate::domain::Domain;
 use crate::domain::validate::validate;
 use edits::{
-    isolated, loops_left, mapped, points_left, rounded, segments_left, shorter, simple_coordinates,
-    vertices, vertices_left, weight, with_number,
+    loops_left, mapped, points_left, rounded, segments_left, shorter, simple_coordinates, vertices,
+    vertices_left, weight, with_number,
 };
 use std::collections::BTreeSet;
 
@@ -146,7 +146,7 @@ impl Search<'_> {
     }
 
     fn without_points(&mut self, best: Domain) -> Domain {
-        let count = isolated(&best).len();
+        let count = best.isolated_points().len();
         self.reduce(best, count, &points_left)
     }
 

@@ -3,11 +3,9 @@
 use super::foot::nearest;
 use super::near::Near;
 use super::tangent::{Beside, Tangent, Trial};
-use crate::skin::Foot;
+use crate::skin::{Foot, shape};
 use crate::surface::Surface;
-use crate::vector::{
-    Vector, add, along, cross, distance, dot, norm, scale, segment_distance_sq, sub, unit,
-};
+use crate::vector::{Vector, add, along, distance, dot, scale, segment_distance_sq, sub, unit};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the front needs to know of its patch.
@@ -324,12 +322,4 @@ impl<'a> SpaceFront<'a> {
 /// poles.
 fn starts([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 3] {
     [[0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], a, b]
-}
-
-/// 1 for the equilateral triangle, 0 for one without area.
-fn shape([a, b, c]: [Vector; 3]) -> f64 {
-    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
-    let edges = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
-    let twice = norm(cross(ab, ca));
-    if edges > 0.0 { 2.0 * 3.0_f64.sqrt() * twice / edges } else { 0.0 }
 }

@@ -6,7 +6,6 @@ use crate::domain::{Domain, Places, Segment};
 use crate::point::Point2;
 use crate::predicates::point_on_segment;
 use std::borrow::Cow;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// The boundary with all its meetings at common vertices. One that is not valid is left as it is:
@@ -44,19 +43,17 @@ pub fn conforming(domain: &Domain) -> Cow<'_, Domain> {
 
 /// With one point for all that have its coordinates.
 fn merged(domain: &Domain) -> Domain {
-    // Adding zero makes 0.0 of -0.0.
-    let key = |p: &Point2| ((p.x + 0.0).to_bits(), (p.y + 0.0).to_bits());
     let mut number = BTreeMap::new();
     let (mut points, mut markers) = (Vec::new(), Vec::new());
     for (i, p) in domain.points.iter().enumerate() {
-        number.entry(key(p)).or_insert_with(|| {
+        number.entry(p.key()).or_insert_with(|| {
             points.push(*p);
             markers.extend(domain.point_markers.get(i));
             points.len() as u32 - 1
         });
     }
     let mut new = domain.clone();
-    let renumber = |v: &mut u32| *v = number[&key(&domain.points[*v as usize])];
+    let renumber = |v: &mut u32| *v = number[&domain.points[*v as usize].key()];
     new.loops.iter_mut().flat_map(|l| l.vertices.iter_mut()).for_each(renumber);
     new.segments.iter_mut().flat_map(|s| s.vertices.iter_mut()).for_each(renumber);
     (new.points, new.point_markers, new.places) = (points, markers, Places::default());
@@ -70,10 +67,8 @@ fn chain(points: &[Point2], [a, b]: [u32; 2]) -> Vec<u32> {
     let mut inner: Vec<u32> = (0..points.len() as u32).filter(is_between).collect();
     // Along the edge each coordinate rises, falls or stays: comparing them is exact.
     inner.sort_by(|&v, &w| {
-        let [v, w] = [v, w].map(|v| points[v as usize]);
-        // Valid points are finite; 0.0 and -0.0 are equal.
-        let along = (v.x, v.y).partial_cmp(&(w.x, w.y)).unwrap_or(Ordering::Equal);
-        if (p.x, p.y) < (q.x, q.y) { along } else { along.reverse() }
+        let along = points[v as usize].lexicographic(points[w as usize]);
+        if p.lexicographic(q).is_lt() { along } else { along.reverse() }
     });
     std::iter::once(a).chain(inner).chain([b]).collect()
 }

@@ -1,6 +1,5 @@
 //! Gmsh's `.geo` script: points, lines, curve loops, plane surfaces; constraints are embedded.
 
-use super::isolated;
 use super::nesting::levels;
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
@@ -34,7 +33,7 @@ pub fn write(domain: &Domain) -> Result<String, ExportError> {
         surfaces.push(i + 1);
         say(format_args!("Plane Surface({}) = {{{loops}}};\n", i + 1));
     }
-    let alone = isolated(domain);
+    let alone = domain.isolated_points();
     // The format wants the surface that an embedded line or point lies in: with one surface it is
     // that.
     if surfaces.len() > 1 && !(domain.segments.is_empty() && alone.is_empty()) {

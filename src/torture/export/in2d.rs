@@ -1,6 +1,5 @@
 //! Netgen's `.in2d` (version 2): points, and segments that name the domain on either side.
 
-use super::isolated;
 use super::nesting::levels;
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
@@ -12,7 +11,7 @@ use std::fmt::Write;
 pub fn write(domain: &Domain) -> Result<String, ExportError> {
     let what = "which of these touching loops lies in which";
     let levels = levels(domain).ok_or_else(|| BoundaryForm::In2d.cannot_say(what))?;
-    if !isolated(domain).is_empty() {
+    if !domain.isolated_points().is_empty() {
         return Err(BoundaryForm::In2d.cannot_say("isolated points"));
     }
     let mut out = String::from("splinecurves2dv2\n1\n\npoints\n");

@@ -5,7 +5,6 @@ use super::{BoundaryForm, ExportError};
 use crate::domain::{BoundingBox, Domain, Loop};
 use crate::point::Point2;
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 
 fn points<'a>(domain: &'a Domain, of: &'a Loop) -> impl Iterator<Item = Point2> + 'a {
     of.vertices.iter().map(|&v| domain.points[v as usize])
@@ -29,9 +28,7 @@ fn polygons(domain: &Domain, form: BoundaryForm) -> Result<Vec<Vec<Vec<Point2>>>
 }
 
 fn isolated(domain: &Domain) -> Vec<Point2> {
-    let used: BTreeSet<u32> = domain.edges().flatten().collect();
-    let alone = (0..).zip(&domain.points).filter(|(i, _)| !used.contains(i));
-    alone.map(|(_, &p)| p).collect()
+    domain.isolated_points().into_iter().map(|v| domain.points[v]).collect()
 }
 
 fn ends(domain: &Domain) -> Vec<Vec<Point2>> {

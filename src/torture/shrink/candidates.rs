@@ -1,8 +1,8 @@
 //! Simpler boundaries one step away, for the shrinkers of test frameworks.
 
 use super::edits::{
-    isolated, loops_left, points_left, segments_left, shorter, simple_coordinates, vertices,
-    vertices_left, weight, with_number,
+    loops_left, points_left, segments_left, shorter, simple_coordinates, vertices, vertices_left,
+    weight, with_number,
 };
 use super::keeps_claim;
 use crate::domain::Domain;
@@ -44,7 +44,7 @@ impl Parts {
         match self {
             Self::Loops => domain.loops.len(),
             Self::Segments => domain.segments.len(),
-            Self::Points => isolated(domain).len(),
+            Self::Points => domain.isolated_points().len(),
             Self::Vertices => vertices(domain),
         }
     }

@@ -29,12 +29,6 @@ pub(super) fn rounded(c: f64, digits: usize) -> f64 {
     format!("{c:.*e}", digits - 1).parse().unwrap_or(c)
 }
 
-/// Points that no loop and no segment uses.
-pub(super) fn isolated(domain: &Domain) -> BTreeSet<usize> {
-    let used: BTreeSet<usize> = domain.edges().flatten().map(|v| v as usize).collect();
-    (0..domain.points.len()).filter(|i| !used.contains(i)).collect()
-}
-
 /// How many vertices the loops have together.
 pub(super) fn vertices(domain: &Domain) -> usize {
     domain.loops.iter().map(|l| l.vertices.len()).sum()
@@ -45,13 +39,14 @@ pub(super) fn segments_left(domain: &Domain, gone: &BTreeSet<usize>) -> Domain {
     let mut left = domain.clone();
     let mut index = 0..;
     left.segments.retain(|_| !index.next().is_some_and(|i| gone.contains(&i)));
-    compacted(&left, &isolated(domain))
+    compacted(&left, &domain.isolated_points())
 }
 
 /// Without some isolated points, counted among these.
 pub(super) fn points_left(domain: &Domain, gone: &BTreeSet<usize>) -> Domain {
-    let alone = isolated(domain).into_iter().enumerate();
-    let kept = alone.filter(|(at, _)| !gone.contains(at)).map(|(_, point)| point).collect();
+    let alone = domain.isolated_points().into_iter().enumerate();
+    let kept: Vec<usize> =
+        alone.filter(|(at, _)| !gone.contains(at)).map(|(_, point)| point).collect();
     compacted(domain, &kept)
 }
 
@@ -63,14 +58,16 @@ pub(super) fn vertices_left(domain: &Domain, gone: &BTreeSet<usize>) -> Domain {
         of.vertices.retain(|_| !index.next().is_some_and(|i| gone.contains(&i)));
         of.markers.truncate(of.vertices.len());
     }
-    compacted(&left, &isolated(domain))
+    compacted(&left, &domain.isolated_points())
 }
 
-/// Without points that are neither used nor among `kept`, and without places in a file.
-fn compacted(domain: &Domain, kept: &BTreeSet<usize>) -> Domain {
-    let used: BTreeSet<usize> = domain.edges().flatten().map(|v| v as usize).collect();
-    let all: Vec<usize> =
-        (0..domain.points.len()).filter(|i| used.contains(i) || kept.contains(i)).collect();
+/// Without points that are neither used nor among `kept`, which is sorted, and without places in a
+/// file.
+fn compacted(domain: &Domain, kept: &[usize]) -> Domain {
+    let mut gone = domain.isolated_points();
+    gone.retain(|v| kept.binary_search(v).is_err());
+    let is_left = |v: &usize| gone.binary_search(v).is_err();
+    let all: Vec<usize> = (0..domain.points.len()).filter(is_left).collect();
     let new: BTreeMap<usize, u32> = all.iter().copied().zip(0..).collect();
     let mut left = domain.clone();
     left.points = all.iter().map(|&i| domain.points[i]).collect();
@@ -96,7 +93,7 @@ pub(super) fn loops_left(domain: &Domain, gone: &BTreeSet<usize>) -> Domain {
             *outer = all.binary_search(outer).unwrap_or(usize::MAX);
         }
     }
-    compacted(&left, &isolated(domain))
+    compacted(&left, &domain.isolated_points())
 }
 
 /// With one coordinate replaced.
