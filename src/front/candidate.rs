@@ -250,11 +250,15 @@ impl Placer<'_> {
         place: impl Fn(&Self, f64) -> Point2,
     ) -> (Point2, f64) {
         let mean = self.n.mean_spacing();
+        // From a coarse base edge a point is further away than the spacing of its ends allows for: held
+        // to that, fine spacing would spread from the ends of long edges, layer by layer, far beyond
+        // what the field asks for.
+        let near = if self.is_coarse() { self.base } else { mean };
         let mut spacing = mean;
         let mut point = place(self, spacing);
         for _ in 0..steps {
             let last = spacing;
-            spacing = field(point).clamp(mean / self.clamp, mean * self.clamp);
+            spacing = field(point).clamp(mean / self.clamp, near * self.clamp);
             point = place(self, spacing);
             if (spacing - last).abs() <= FIXED_POINT_TOLERANCE * spacing {
                 break;
@@ -272,6 +276,10 @@ impl Placer<'_> {
             depth: self.n.depth + height,
             score: self.score(point, spacing),
         }
+    }
+
+    fn is_coarse(&self) -> bool {
+        self.base > COARSE_BASE * self.n.mean_spacing()
     }
 
     /// The wanted length between vertices of these spacings, in reach of the base edge.
@@ -338,7 +346,7 @@ impl Placer<'_> {
     /// the front closes triangles as coarse as the boundary.
     fn fit(&self, p: Point2, spacing: f64) -> f64 {
         let n = self.n;
-        let coarse = self.base > COARSE_BASE * self.n.mean_spacing();
+        let coarse = self.is_coarse();
         let side = |end: Point2, h: f64| {
             let wanted = if coarse { self.length(h, spacing) } else { 0.5 * (h + spacing) };
             let ratio = end.distance(p) / wanted;
