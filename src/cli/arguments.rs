@@ -712,7 +712,10 @@ pub struct TortureArguments {
     /// Keep coordinates at integers of moderate size, for meshers that work with tolerances.
     #[arg(long)]
     pub plain: bool,
-    /// Time for each boundary, in seconds.
+    /// Processor time for each boundary, in seconds.
+    ///
+    /// Rounded up to whole ones; a mesher that waits without working is ended after five times as
+    /// long by the clock. On Windows it is time by the clock.
     #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = parse_duration)]
     pub timeout: Duration,
     /// Memory for each boundary: bytes, or with a suffix such as 500M or 4G (`ulimit -v`).

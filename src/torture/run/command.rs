@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 /// Limits of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Wall-clock time.
+    /// Processor time of a program, kept in whole seconds by the shell's `ulimit -t`: so a busy machine
+    /// makes no hangs. One that waits for ever is ended after [`PATIENCE`] times as much by the clock.
+    /// On Windows it is time by the clock.
     pub time: Duration,
     /// Address space in bytes. Kept by the shell's `ulimit -v`, where that works (Linux, the BSDs);
     /// macOS and Windows have no such limit and ignore it.
@@ -41,6 +43,11 @@ pub struct Ended {
 
 /// As much of the output is kept.
 const TAIL: u64 = 2000;
+/// Times by the clock that a program may take of its processor time.
+const PATIENCE: u32 = if cfg!(unix) { 5 } else { 1 };
+/// The signal of a program whose processor time is up, the same on Linux, macOS and the BSDs.
+#[cfg(unix)]
+const SIGXCPU: i32 = 24;
 
 /// Runs a command line in a folder by the shell.
 ///
@@ -59,7 +66,7 @@ pub fn execute(
     shell.stdout(output.try_clone()?).stderr(output);
     let start = Instant::now();
     let mut child = running.start(&mut shell, folder)?;
-    let status = wait(&mut child, start, limits.time);
+    let status = wait(&mut child, start, limits.time * PATIENCE);
     // Whatever it started and left behind goes with it.
     running.end(&child);
     let status = status?;
@@ -91,16 +98,18 @@ fn wait(child: &mut Child, start: Instant, time: Duration) -> io::Result<Option<
     }
 }
 
-/// A shell in a process group of its own. The limit on processor time is a backstop for runs
-/// whose parent was killed; that on file size keeps a chatterbox from filling the disk.
+/// A shell in a process group of its own. The limit on file size keeps a chatterbox from filling the
+/// disk. The limits on processor time hold where its parent was killed, too; the second one is for
+/// programs that catch the signal of the first.
 #[cfg(unix)]
 fn shell(command: &str, limits: &Limits) -> Command {
     use std::os::unix::process::CommandExt;
     let kilobytes = limits.memory / 1024;
-    let seconds = 100 * (1 + limits.time.as_secs());
+    let seconds = limits.time.as_millis().div_ceil(1000).max(1);
+    let (soft, hard) = (seconds, 2 * seconds);
     let script = format!(
-        "ulimit -v {kilobytes} 2>/dev/null; ulimit -t {seconds} 2>/dev/null; \
-         ulimit -c 0 2>/dev/null; ulimit -f 8388608 2>/dev/null; {command}"
+        "ulimit -v {kilobytes} 2>/dev/null; ulimit -S -t {soft} 2>/dev/null; \
+         ulimit -H -t {hard} 2>/dev/null; ulimit -c 0 2>/dev/null; ulimit -f 8388608 2>/dev/null; {command}"
     );
     let mut shell = Command::new("sh");
     shell.args(["-c", &script]).process_group(0);
@@ -118,8 +127,10 @@ fn shell(command: &str, _limits: &Limits) -> Command {
 fn ending(status: ExitStatus) -> Ending {
     use std::os::unix::process::ExitStatusExt;
     match (status.signal(), status.code()) {
-        (Some(signal), _) => Ending::Signal(signal),
+        (Some(SIGXCPU), _) => Ending::TimedOut,
         // A shell tells of a signal in this way.
+        (None, Some(code)) if code == 128 + SIGXCPU => Ending::TimedOut,
+        (Some(signal), _) => Ending::Signal(signal),
         (None, Some(code @ 129..=192)) => Ending::Signal(code - 128),
         (None, code) => Ending::Exit(code.unwrap_or(-1)),
     }
@@ -185,6 +196,17 @@ mod tests {
         assert!(ended.time < Duration::from_secs(20), "{:?}", ended.time);
         std::thread::sleep(Duration::from_millis(2500));
         assert!(!folder.path().join("survived").exists(), "the child went on");
+    }
+
+    // spec: R6
+    #[test]
+    fn a_busy_loop_is_ended_by_its_processor_time() {
+        for command in ["while :; do :; done", "sh -c 'while :; do :; done'; exit $?"] {
+            // Five times as long by the clock: what ended it is the limit on processor time.
+            let ended = run(command, 1000);
+            assert_eq!(ended.ending, Ending::TimedOut, "{command}");
+        }
+        assert_eq!(run("ulimit -S -t; ulimit -H -t", 2500).said, "3\n6");
     }
 
     // spec: R6

@@ -132,7 +132,9 @@ impl Tool {
             Answer::OutOfMemory(format!("it asked for more than {} bytes: {said}", limits.memory))
         };
         match ended.ending {
-            Ending::TimedOut => Answer::Hang(format!("still running after {:?}", limits.time)),
+            Ending::TimedOut => {
+                Answer::Hang(format!("still running after its time of {:?}", limits.time))
+            }
             Ending::Exit(0) => read_answer(&self.output(folder), said),
             Ending::Exit(_) if self.limit.is_some_and(|words| said.contains(words)) => {
                 Answer::Limit(said.clone())
