@@ -1,8 +1,11 @@
-//! Gmsh's `.geo` script: points, lines, curve loops, plane surfaces; constraints are embedded.
+//! Gmsh's `.geo` script: points, lines, curve loops (all counterclockwise), plane surfaces; constraints
+//! are embedded.
 
 use super::nesting::levels;
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
+use crate::domain::validate::loop_orientation;
+use crate::predicates::Sign;
 use std::fmt::Write;
 
 /// The script. Each point's mesh size is the mean length of its edges.
@@ -22,8 +25,13 @@ pub fn write(domain: &Domain) -> Result<String, ExportError> {
     }
     let mut line = 1;
     for (i, of) in domain.loops.iter().enumerate() {
-        let lines = list(line..line + of.vertices.len());
-        line += of.vertices.len();
+        let lines = line..line + of.vertices.len();
+        line = lines.end;
+        // Gmsh turns its triangles the way the surface's first loop runs.
+        let lines = match loop_orientation(&domain.points, &of.vertices) {
+            Sign::Negative => list(lines.rev().map(|n| format!("-{n}"))),
+            _ => list(lines),
+        };
         say(format_args!("Curve Loop({}) = {{{lines}}};\n", i + 1));
     }
     let mut surfaces = Vec::new();
@@ -51,7 +59,7 @@ pub fn write(domain: &Domain) -> Result<String, ExportError> {
     Ok(out)
 }
 
-fn list(numbers: impl Iterator<Item = usize>) -> String {
+fn list<N: ToString>(numbers: impl Iterator<Item = N>) -> String {
     numbers.map(|n| n.to_string()).collect::<Vec<_>>().join(", ")
 }
 
