@@ -1,6 +1,6 @@
 //! Putting triangulations together.
 
-use super::{ACROSS, Across, BORDER_BIT, LIVE, FLAGS, Slot, TRIANGLES_MAX, Triangulation, VertexId};
+use super::{ACROSS, BORDER_BIT, FLAGS, LIVE, Slot, TRIANGLES_MAX, Triangulation, VertexId};
 
 impl Triangulation {
     /// Adds the triangles of another triangulation after all slots, in their order, with other
@@ -37,7 +37,7 @@ impl Triangulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangulation::{HalfEdgeId, TriangleId};
+    use crate::triangulation::{Across, HalfEdgeId, TriangleId};
 
     /// Two triangles at an edge, the second with a tag and a constraint.
     fn pair() -> Triangulation {
