@@ -44,9 +44,9 @@ pub(super) struct Fan {
 
 /// Edges farther from the point than this many spacings are not flipped away: what the far open
 /// region looks like does not matter before the front gets there. In front of a flat front the
-/// circumcircles are huge and the full cavity has 16 triangles on average, this one 8, and the
-/// meshes come out the same (from 1.5 spacings on, on all domains tried).
-const REACH: f64 = 2.0;
+/// circumcircles are huge and the full cavity has 16 triangles on average, that of two spacings 8;
+/// from 1.25 spacings on the meshes come out the same on all domains tried.
+const REACH: f64 = 1.5;
 /// A new point keeps this fraction of its spacing from every other vertex it sees.
 const CLEARANCE_VERTEX: f64 = 0.66;
 /// And from every front edge this fraction, squared, of the edge's length, but at least the first
