@@ -19,6 +19,7 @@ mod candidate;
 mod cavity;
 pub mod chart;
 mod fan;
+mod parts;
 mod queue;
 mod vertex;
 
@@ -34,6 +35,7 @@ use queue::Queue;
 use vertex::Vertices;
 
 pub use candidate::Rules;
+pub use parts::SharedProgress;
 pub use queue::Order;
 
 /// The state from which a front starts: the domain, all of it open.
@@ -140,7 +142,10 @@ struct Front<'a, C: Chart> {
 /// Runs a front from `start` until the open region is empty.
 ///
 /// The result is a conforming triangulation of the start's region with all its vertices and
-/// border edges (SPEC F1, F2). Time is linear in the number of triangles for the default order.
+/// border edges (SPEC F1, F2). Pieces of the region that do not hang together have fronts of their
+/// own, which run at the same time: the result is the same for any number of threads, and its points
+/// and triangles are piece by piece in the order of their smallest edges (SPEC F10, F11). Time is
+/// linear in the number of triangles for the default order.
 ///
 /// # Errors
 /// [`FrontError::Budget`] when more than `vertices_max` points would be inserted, and
@@ -149,13 +154,12 @@ pub fn advance(
     start: Start,
     field: &SizeField,
     options: FrontOptions,
-    progress: Progress<'_>,
+    progress: SharedProgress<'_>,
 ) -> Result<FrontMesh, FrontError> {
-    let lifts = vec![(); start.points.len()];
-    advance_on(start, lifts, &Plane { field }, options, progress).map(|(mesh, _)| mesh)
+    parts::advance(start, &Plane { field }, options, progress)
 }
 
-/// The same in any chart; `lifts` is what lies above the start's points. Returns what lies above
+/// One front in any chart; `lifts` is what lies above the start's points. Returns what lies above
 /// the points of the mesh, too.
 ///
 /// # Errors
@@ -167,40 +171,26 @@ pub fn advance_on<C: Chart>(
     options: FrontOptions,
     progress: Progress<'_>,
 ) -> Result<(FrontMesh, Vec<C::Lift>), FrontError> {
-    let mut front = Front::new(start, lifts, chart, options);
-    front.fan_corners();
-    let mut steps = 0;
-    while let Some(id) = front.queue.pop() {
-        if front.edges[id as usize].alive {
-            front.step(id);
-            steps += 1;
-            if front.stats.inserted > options.vertices_max as u64 {
-                return Err(FrontError::Budget(options.vertices_max));
-            }
-            if steps % PROGRESS_STEPS == 0 && !progress(front.accepted.live_count()) {
-                return Err(FrontError::Stopped);
-            }
-        }
-        front.free_edges.push(id);
-    }
-    debug_assert_eq!(front.open.live_count(), 0, "the front ended with an open triangle");
-    let (points, lifts, spacing) = front.vertices.into_parts();
-    Ok((FrontMesh { points, mesh: front.accepted, spacing, stats: front.stats }, lifts))
+    let hints = start.edges.iter().map(|e| Hint(e.triangle())).collect();
+    let mut report = |triangles, _| match progress(triangles) {
+        true => Ok(()),
+        false => Err(FrontError::Stopped),
+    };
+    Front::new(start, hints, lifts, chart, options).run(&mut report)
 }
 
 impl<'a, C: Chart> Front<'a, C> {
-    fn new(start: Start, lifts: Vec<C::Lift>, chart: &'a C, options: FrontOptions) -> Self {
-        let edges = start
-            .edges
-            .iter()
-            .enumerate()
-            .map(|(i, &half_edge)| FrontEdge {
-                half_edge,
-                outer: Across::Border(i as u32),
-                hint: Hint(half_edge.triangle()),
-                alive: true,
-            })
-            .collect();
+    fn new(
+        start: Start,
+        hints: Vec<Hint>,
+        lifts: Vec<C::Lift>,
+        chart: &'a C,
+        options: FrontOptions,
+    ) -> Self {
+        let edges = (0..).zip(start.edges.iter().zip(hints)).map(|(i, (&half_edge, hint))| {
+            FrontEdge { half_edge, outer: Across::Border(i), hint, alive: true }
+        });
+        let edges = edges.collect();
         let mut front = Self {
             open: start.region,
             accepted: Triangulation::default(),
@@ -217,6 +207,32 @@ impl<'a, C: Chart> Front<'a, C> {
         };
         front.start_order = front.enqueue_start();
         front
+    }
+
+    /// Advances until the open region is empty; `report` hears now and then of the accepted triangles
+    /// and the inserted points, and may end it.
+    fn run(
+        mut self,
+        report: &mut dyn FnMut(usize, u64) -> Result<(), FrontError>,
+    ) -> Result<(FrontMesh, Vec<C::Lift>), FrontError> {
+        self.fan_corners();
+        let mut steps = 0;
+        while let Some(id) = self.queue.pop() {
+            if self.edges[id as usize].alive {
+                self.step(id);
+                steps += 1;
+                if self.stats.inserted > self.options.vertices_max as u64 {
+                    return Err(FrontError::Budget(self.options.vertices_max));
+                }
+                if steps % PROGRESS_STEPS == 0 {
+                    report(self.accepted.live_count(), self.stats.inserted)?;
+                }
+            }
+            self.free_edges.push(id);
+        }
+        debug_assert_eq!(self.open.live_count(), 0, "the front ended with an open triangle");
+        let (points, lifts, spacing) = self.vertices.into_parts();
+        Ok((FrontMesh { points, mesh: self.accepted, spacing, stats: self.stats }, lifts))
     }
 
     /// Queues the initial edges chain by chain, each from its lexicographically smallest edge, so

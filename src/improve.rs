@@ -36,6 +36,9 @@ pub struct ImproveOptions {
     /// Changes in a chain of tries: when none makes things better, the search goes on from the least
     /// bad one.
     pub depth: u32,
+    /// Changes tried in each step of a chain after its first, those that do the least harm at first;
+    /// 0 for all of them, as at bad triangles in any case.
+    pub breadth: u32,
     /// No more tries than this: the budget counts operations, so that the answer does not depend on
     /// a clock.
     pub tries_max: u64,
@@ -43,7 +46,8 @@ pub struct ImproveOptions {
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
-    pub const NONE: Self = Self { sweeps: 0, passes: 0, rings: 0, depth: 0, tries_max: 0 };
+    pub const NONE: Self =
+        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0 };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
     /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
@@ -51,9 +55,11 @@ impl ImproveOptions {
     pub const fn level(level: u8) -> Self {
         match level {
             0 => Self { sweeps: 4, ..Self::NONE },
-            1 => Self { sweeps: 4, passes: 5, rings: 3, depth: 2, tries_max: 64_000 },
-            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, tries_max: 400_000 },
-            _ => Self { sweeps: 6, passes: 16, rings: 4, depth: 6, tries_max: u64::MAX },
+            1 => Self { sweeps: 4, passes: 8, rings: 3, depth: 2, breadth: 6, tries_max: 32_000 },
+            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, breadth: 0, tries_max: 400_000 },
+            _ => {
+                Self { sweeps: 6, passes: 16, rings: 4, depth: 6, breadth: 0, tries_max: u64::MAX }
+            }
         }
     }
 }
@@ -105,7 +111,8 @@ pub fn improve(
     if options.passes == 0 || options.depth == 0 {
         return stats;
     }
-    let effort = Effort { rings: options.rings, depth: options.depth };
+    let ImproveOptions { rings, depth, breadth, .. } = options;
+    let effort = Effort { rings, depth, breadth };
     let outgoing = smoother.outgoing;
     let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
     for _ in 0..options.passes {

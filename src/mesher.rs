@@ -68,7 +68,8 @@ impl std::fmt::Display for Stage {
 }
 
 /// Watches a run: for progress bars, timings and stopping. The library has no clock of its own.
-pub trait Observer {
+/// Progress may be reported from any thread, one at a time.
+pub trait Observer: Send {
     /// A stage begins.
     fn stage(&mut self, _stage: Stage) {}
     /// The prediction is known; `false` stops the run.

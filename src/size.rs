@@ -92,6 +92,16 @@ impl SizeField {
         }
     }
 
+    /// Whether some value may be no spacing: that of a user's function.
+    #[must_use]
+    pub fn can_fail(&self) -> bool {
+        match self {
+            Self::Expression(_) => true,
+            Self::Composed(field) => field.base.can_fail(),
+            _ => false,
+        }
+    }
+
     /// The first value of the user's function that was no spacing, if it has given one.
     #[must_use]
     pub fn fault(&self) -> Option<BadSpacing> {

@@ -15,6 +15,7 @@
 //!   origin(e0)--e0--origin(e1)
 //! ```
 
+mod append;
 pub(crate) mod arena;
 pub mod constrain;
 pub mod locate;

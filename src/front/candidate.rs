@@ -171,6 +171,8 @@ fn right_end(
 
 /// An inserted point must beat the existing apex by this factor.
 const NEW_POINT_WEIGHT: f64 = 0.97;
+/// Scores are at most 1, so no new point beats an apex with this one: it need not be looked for.
+const UNBEATABLE: f64 = 0.9701;
 /// Evaluations of the field for a scored trial: the second moves the point by less than 2 %.
 const SCORED_STEPS: usize = 2;
 /// Evaluations for the report's fixed point, and its tolerance.
@@ -209,12 +211,15 @@ struct Placer<'a> {
 impl Placer<'_> {
     fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
         let n = self.n;
+        let floor = self.apex_score();
+        if floor >= UNBEATABLE {
+            return [None; 3];
+        }
         let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
         let bisect = |corner: &Corner, at: Point2, along: Point2| {
             (corner.is_below(COS_BISECT_MAX) && !corner.is_below(COS_BISECT_MIN))
                 .then(|| self.bisector(corner, at, along, spacing))
         };
-        let floor = self.apex_score();
         let mut trials = [Some(front), bisect(&n.left, n.a, n.b), bisect(&n.right, n.b, n.a)]
             .map(|point| point.map(|point| self.trial(point, spacing)));
         for trial in &mut trials {
@@ -259,6 +264,9 @@ impl Placer<'_> {
         for _ in 0..steps {
             let last = spacing;
             spacing = field(point).clamp(mean / self.clamp, near * self.clamp);
+            if spacing == last {
+                break;
+            }
             point = place(self, spacing);
             if (spacing - last).abs() <= FIXED_POINT_TOLERANCE * spacing {
                 break;

@@ -44,9 +44,9 @@ pub(super) struct Fan {
 
 /// Edges farther from the point than this many spacings are not flipped away: what the far open
 /// region looks like does not matter before the front gets there. In front of a flat front the
-/// circumcircles are huge and the full cavity has 16 triangles on average, this one 8, and the
-/// meshes come out the same (from 1.5 spacings on, on all domains tried).
-const REACH: f64 = 2.0;
+/// circumcircles are huge and the full cavity has 16 triangles on average, that of two spacings 8;
+/// from 1.25 spacings on the meshes come out the same on all domains tried.
+const REACH: f64 = 1.5;
 /// A new point keeps this fraction of its spacing from every other vertex it sees.
 const CLEARANCE_VERTEX: f64 = 0.66;
 /// And from every front edge this fraction, squared, of the edge's length, but at least the first
@@ -103,9 +103,10 @@ impl Cavity {
         base: HalfEdgeId,
     ) -> bool {
         self.begin();
-        if !self.absorb(open, probe, base.triangle(), false) {
+        if !probe.in_circle(open.corners(base.triangle())) {
             return false;
         }
+        self.absorb(open, base.triangle());
         self.stack.extend([base.prev(), base.next(), base]);
         while let Some(e) = self.stack.pop() {
             let edge = RingEdge {
@@ -130,22 +131,24 @@ impl Cavity {
         probe: &Probe<'_, C>,
         edge: RingEdge,
     ) -> Crossing {
-        if let Across::Twin(twin) = edge.across {
-            // Circles on a surface are approximate: they may miss a triangle that must go.
-            let must = C::CURVED && !probe.is_left(edge);
-            if must || probe.is_near(edge) || !probe.is_left(edge) {
-                if open.mark(twin.triangle()) == self.epoch {
-                    // The cavity closes around a vertex: it is no disk.
-                    return Crossing::Unsound;
-                }
-                if self.absorb(open, probe, twin.triangle(), must) {
-                    return Crossing::Absorbed(twin);
-                }
-            } else {
-                return Crossing::Outline;
-            }
+        let Across::Twin(twin) = edge.across else {
+            return if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound };
+        };
+        // Circles on a surface are approximate: they may miss a triangle that must go.
+        let must = C::CURVED && !probe.is_left(edge);
+        let is_seen = open.mark(twin.triangle()) == self.epoch;
+        if !is_seen && !must && !probe.in_circle(open.corners(twin.triangle())) {
+            return if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound };
         }
-        if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound }
+        if !must && !probe.is_near(edge) && probe.is_left(edge) {
+            return Crossing::Outline;
+        }
+        if is_seen {
+            // The cavity closes around a vertex: it is no disk.
+            return Crossing::Unsound;
+        }
+        self.absorb(open, twin.triangle());
+        Crossing::Absorbed(twin)
     }
 
     fn begin(&mut self) {
@@ -157,19 +160,9 @@ impl Cavity {
         self.moved.clear();
     }
 
-    fn absorb<C: Chart>(
-        &mut self,
-        open: &mut Triangulation,
-        probe: &Probe<'_, C>,
-        t: TriangleId,
-        must: bool,
-    ) -> bool {
-        let inside = must || probe.in_circle(open.corners(t));
-        if inside {
-            open.set_mark(t, self.epoch);
-            self.triangles.push(t);
-        }
-        inside
+    fn absorb(&mut self, open: &mut Triangulation, t: TriangleId) {
+        open.set_mark(t, self.epoch);
+        self.triangles.push(t);
     }
 
     /// Whether the trial keeps its clearances from the outline. The nearest vertex that a point

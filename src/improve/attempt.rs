@@ -11,9 +11,13 @@ use super::patch::{Change, Cut, Origin, Patch, Worth};
 use crate::triangulation::VertexId;
 
 /// A success must lower the excess of its patch by this much, or it is not worth its disturbance.
-const GAIN_MIN: f64 = 2e-3;
-/// A change that is so much worse than the best so far after one sweep is given up.
-const HOPELESS: f64 = 1.1;
+const GAIN_MIN: f64 = 3e-3;
+/// A change that is so much worse than the best so far after one sweep and flips is given up.
+const HOPELESS: f64 = 1.15;
+/// And before the flips by this factor more, where not everything is tried.
+const HOPELESS_UNFLIPPED: f64 = 1.1 * HOPELESS;
+/// Where a patch has a worse inverse mean ratio than this, everything is tried.
+const BAD: f64 = 1.1;
 /// Two patches of the same origin whose excesses differ by less than this are the same again.
 const SAME: f64 = 5e-3;
 
@@ -24,6 +28,8 @@ pub(super) struct Effort {
     pub(super) rings: u32,
     /// Length of a chain of changes.
     pub(super) depth: u32,
+    /// Changes tried in each step after the first, least harmful first; 0 for all of them.
+    pub(super) breadth: u32,
 }
 
 /// What came of a search.
@@ -55,6 +61,8 @@ pub(super) struct Searcher {
     next: Patch,
     best: Patch,
     changes: Vec<Change>,
+    /// Changes by what they do before anything is relaxed.
+    ranked: Vec<(f64, Change)>,
     around: Vec<VertexId>,
 }
 
@@ -65,12 +73,14 @@ struct Goal {
     bound: f64,
     found: bool,
     tried: u64,
+    /// Whether the search is not to be narrowed.
+    everything: bool,
 }
 
 impl Searcher {
     /// Searches around a vertex.
     pub(super) fn search(&mut self, view: View<'_>, v: VertexId) -> Attempt {
-        let Effort { rings, depth } = view.effort;
+        let Effort { rings, depth, breadth } = view.effort;
         let mut attempt = Attempt::default();
         let cut = Cut { rings, fixed: view.fixed };
         let Some(here) = self.base.cut(view.degrees, v, cut, &mut attempt.origin) else {
@@ -78,11 +88,16 @@ impl Searcher {
         };
         let now = self.base.worth();
         let bound = now.excess - GAIN_MIN;
-        let mut goal = Goal { worst: now.worst, bound, found: false, tried: 0 };
+        let everything = breadth == 0 || now.worst > BAD;
+        let mut goal = Goal { worst: now.worst, bound, found: false, tried: 0, everything };
         let mut seen = vec![now.excess];
         self.around.clear();
         self.around.push(here);
-        for _ in 0..depth {
+        for step in 0..depth {
+            self.list_changes();
+            if step > 0 && !everything {
+                self.shortlist(breadth as usize);
+            }
             let least = self.try_all(view.quantum, &mut goal, &seen);
             if goal.found || least == f64::INFINITY {
                 break;
@@ -99,13 +114,29 @@ impl Searcher {
         attempt
     }
 
-    /// Tries the changes around the vertices in question from the base on; returns the least excess
-    /// that is no success and has not been seen, whose patch is then the next.
-    fn try_all(&mut self, quantum: Option<f64>, goal: &mut Goal, seen: &[f64]) -> f64 {
+    /// Lists the changes around the vertices in question.
+    fn list_changes(&mut self) {
         self.changes.clear();
         for &v in &self.around {
             self.base.changes(v, &mut self.changes);
         }
+    }
+
+    /// Leaves no more changes than `most`: those that do the least harm before anything is relaxed.
+    fn shortlist(&mut self, most: usize) {
+        if self.changes.len() <= most {
+            return;
+        }
+        self.ranked.clear();
+        self.ranked.extend(self.changes.iter().map(|&change| (self.base.rise(change), change)));
+        self.ranked.sort_by(|s, t| s.0.total_cmp(&t.0));
+        self.changes.clear();
+        self.changes.extend(self.ranked.iter().take(most).map(|&(_, change)| change));
+    }
+
+    /// Tries the listed changes from the base on; returns the least excess that is no success and
+    /// has not been seen, whose patch is then the next.
+    fn try_all(&mut self, quantum: Option<f64>, goal: &mut Goal, seen: &[f64]) -> f64 {
         let mut least = f64::INFINITY;
         for &change in &self.changes {
             self.trial.assign(&self.base);
@@ -113,7 +144,8 @@ impl Searcher {
                 continue;
             }
             goal.tried += 1;
-            self.trial.relax(quantum, HOPELESS * goal.bound);
+            let unflipped = if goal.everything { f64::INFINITY } else { HOPELESS_UNFLIPPED };
+            self.trial.relax(quantum, [unflipped, HOPELESS].map(|factor| factor * goal.bound));
             let Worth { excess, worst } = self.trial.worth();
             if excess < goal.bound && worst <= goal.worst {
                 goal.bound = excess;

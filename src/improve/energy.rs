@@ -19,6 +19,22 @@ pub(super) fn inverse_mean_ratio(a: Point2, b: Point2, c: Point2) -> f64 {
     if double_area > 0.0 { squares / (TWO_SQRT_3 * double_area) } else { f64::INFINITY }
 }
 
+/// An edge out of the vertex, and its squared length.
+#[derive(Clone, Copy)]
+struct Spoke {
+    x: f64,
+    y: f64,
+    square: f64,
+}
+
+impl Spoke {
+    #[inline]
+    fn new(from: Point2, to: Point2) -> Self {
+        let (x, y) = (to.x - from.x, to.y - from.y);
+        Self { x, y, square: x * x + y * y }
+    }
+}
+
 /// Energy, its gradient and Hessian, and the worst inverse mean ratio (unscaled) of a star.
 struct Energy {
     value: f64,
@@ -30,36 +46,34 @@ struct Energy {
 impl Energy {
     fn of(v: Point2, link: &[Point2]) -> Self {
         let mut sum = Self { value: 0.0, worst: 0.0, gradient: [0.0; 2], hessian: [0.0; 3] };
-        let mut w = link[link.len() - 1];
+        let mut before = Spoke::new(v, link[link.len() - 1]);
         for &u in link {
-            sum.add(v, w, u);
-            w = u;
+            let spoke = Spoke::new(v, u);
+            sum.add(before, spoke);
+            before = spoke;
         }
         sum
     }
 
-    /// Adds the triangle (v, u, w): f = q / a with q the squared sides and a twice the area.
+    /// Adds the triangle of two spokes: f = q / a with q the squared sides and a twice the area.
     #[inline]
-    fn add(&mut self, v: Point2, u: Point2, w: Point2) {
-        let (ux, uy, wx, wy) = (u.x - v.x, u.y - v.y, w.x - v.x, w.y - v.y);
-        let (ex, ey) = (wx - ux, wy - uy);
-        let q = ux * ux + uy * uy + wx * wx + wy * wy + ex * ex + ey * ey;
-        let a = ux * wy - uy * wx;
+    fn add(&mut self, u: Spoke, w: Spoke) {
+        let (ex, ey) = (w.x - u.x, w.y - u.y);
+        let a = u.x * w.y - u.y * w.x;
         let per_a = 1.0 / a;
-        let f = q * per_a;
+        let f = (u.square + w.square + (ex * ex + ey * ey)) * per_a;
         // d(2 area)/dv is the edge u -> w turned a quarter: (-ey, ex); dq/dv = -2 (u + w - 2 v).
-        let (ax, ay) = (-ey, ex);
-        let gx = (-2.0 * (ux + wx) - f * ax) * per_a;
-        let gy = (-2.0 * (uy + wy) - f * ay) * per_a;
-        let (hxx, hyy) = ((4.0 - 2.0 * gx * ax) * per_a, (4.0 - 2.0 * gy * ay) * per_a);
-        let hxy = -(gx * ay + gy * ax) * per_a;
+        let gx = (f * ey - 2.0 * (u.x + w.x)) * per_a;
+        let gy = (-f * ex - 2.0 * (u.y + w.y)) * per_a;
+        let (along, across) = (gx * ex, gy * ey);
+        let scale = f * per_a;
         self.value += f * f;
         self.worst = if a > 0.0 { self.worst.max(f) } else { f64::INFINITY };
         self.gradient[0] += f * gx;
         self.gradient[1] += f * gy;
-        self.hessian[0] += gx * gx + f * hxx;
-        self.hessian[1] += gx * gy + f * hxy;
-        self.hessian[2] += gy * gy + f * hyy;
+        self.hessian[0] += gx * gx + scale * (4.0 + 2.0 * gx * ey);
+        self.hessian[1] += gx * gy + scale * (across - along);
+        self.hessian[2] += gy * gy + scale * (4.0 - 2.0 * gy * ex);
     }
 
     /// The Newton step, or `None` where the energy is not convex.
@@ -76,13 +90,12 @@ impl Energy {
 fn is_better(v: Point2, link: &[Point2], now: &Energy) -> bool {
     let mut value = 0.0;
     let mut worst = 0.0_f64;
-    let mut u = link[link.len() - 1];
-    for &w in link {
-        let (ux, uy, wx, wy) = (u.x - v.x, u.y - v.y, w.x - v.x, w.y - v.y);
-        let (ex, ey) = (wx - ux, wy - uy);
-        let q = ux * ux + uy * uy + wx * wx + wy * wy + ex * ex + ey * ey;
-        let a = ux * wy - uy * wx;
-        let f = q / a;
+    let mut u = Spoke::new(v, link[link.len() - 1]);
+    for &end in link {
+        let w = Spoke::new(v, end);
+        let (ex, ey) = (w.x - u.x, w.y - u.y);
+        let a = u.x * w.y - u.y * w.x;
+        let f = (u.square + w.square + (ex * ex + ey * ey)) / a;
         value += f * f;
         worst = if a > 0.0 { worst.max(f) } else { f64::INFINITY };
         u = w;

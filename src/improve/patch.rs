@@ -71,7 +71,7 @@ const BAD_WEIGHT: f64 = 6.0;
 /// A larger patch is no ordinary place.
 const TRIANGLES_MAX: usize = 200;
 /// Sweeps of smoothing and flips before a change is judged.
-const SWEEPS: usize = 4;
+const SWEEPS: usize = 3;
 
 impl Patch {
     /// Takes over another patch, reusing memory.
@@ -146,13 +146,16 @@ impl Patch {
     }
 
     /// Smooths and flips to Delaunay from where a change was made; gives up after the first sweep
-    /// when it is `hopeless`.
-    pub(super) fn relax(&mut self, quantum: Option<f64>, hopeless: f64) {
+    /// when the excess is then above the first limit, and after its flips when it is above the second.
+    pub(super) fn relax(&mut self, quantum: Option<f64>, [unflipped_max, flipped_max]: [f64; 2]) {
         let Self { mesh, points, fixed, smoother, .. } = self;
         let mut sheet = Sheet { mesh, points, fixed: *fixed, quantum };
         smoother.sweep(&mut sheet);
+        if unflipped_max < f64::INFINITY && excess(sheet.mesh, sheet.points) > unflipped_max {
+            return;
+        }
         smoother.flip(&mut sheet);
-        if excess(sheet.mesh, sheet.points) > hopeless {
+        if excess(sheet.mesh, sheet.points) > flipped_max {
             return;
         }
         for _ in 1..SWEEPS {
@@ -181,6 +184,48 @@ impl Patch {
     pub(super) fn changes(&self, v: VertexId, list: &mut Vec<Change>) {
         let outgoing = &self.smoother.outgoing;
         Degrees { mesh: &self.mesh, points: &self.points, outgoing }.changes(v, list);
+    }
+
+    /// By how much a change raises the excess before anything is relaxed; infinite when it inverts a
+    /// triangle or cannot be made. Floats: this ranks.
+    pub(super) fn rise(&self, change: Change) -> f64 {
+        match change {
+            Change::Flip(a, b) => self.edge(a, b).map_or(f64::INFINITY, |e| self.rise_of_flip(e)),
+            Change::Split(a, b) => self.edge(a, b).map_or(f64::INFINITY, |e| self.rise_of_split(e)),
+            Change::Remove(v) => self.rise_of_removal(v),
+        }
+    }
+
+    fn rise_of_flip(&self, e: HalfEdgeId) -> f64 {
+        let Some(f) = self.mesh.twin(e) else { return f64::INFINITY };
+        let [a, b] = [self.mesh.origin(e), self.mesh.dest(e)].map(|v| self.points[v.index()]);
+        let [c, d] = [self.mesh.apex(e), self.mesh.apex(f)].map(|v| self.points[v.index()]);
+        shortfall(d, c, a) + shortfall(c, d, b) - shortfall(a, b, c) - shortfall(b, a, d)
+    }
+
+    fn rise_of_split(&self, e: HalfEdgeId) -> f64 {
+        let Some(f) = self.mesh.twin(e) else { return f64::INFINITY };
+        let [a, b] = [self.mesh.origin(e), self.mesh.dest(e)].map(|v| self.points[v.index()]);
+        let [c, d] = [self.mesh.apex(e), self.mesh.apex(f)].map(|v| self.points[v.index()]);
+        let m = Point2::new(0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y);
+        let after: f64 =
+            [(b, c), (c, a), (a, d), (d, b)].map(|(p, q)| shortfall(p, q, m)).iter().sum();
+        after - shortfall(a, b, c) - shortfall(b, a, d)
+    }
+
+    /// The polygon is fanned from the first of its corners from which no triangle is inverted.
+    fn rise_of_removal(&self, v: VertexId) -> f64 {
+        let Some(start) = self.out_of(v) else { return f64::INFINITY };
+        let own = self.points[v.index()];
+        let dest = |e| self.points[self.mesh.dest(e).index()];
+        let link: Vec<Point2> = self.mesh.star(start).map(dest).collect();
+        let n = link.len();
+        let at = |i: usize| link[i % n];
+        let before: f64 = (0..n).map(|i| shortfall(own, at(i), at(i + 1))).sum();
+        let fan =
+            |w: usize| (1..n - 1).map(|i| shortfall(at(w), at(w + i), at(w + i + 1))).sum::<f64>();
+        let after = (0..n).map(fan).find(|after| after.is_finite());
+        after.map_or(f64::INFINITY, |after| after - before)
     }
 
     fn touch(&mut self, t: TriangleId) {
@@ -289,6 +334,11 @@ fn ratios(mesh: &Triangulation, points: &[Point2]) -> impl Iterator<Item = f64> 
         let [a, b, c] = mesh.corners(t).map(|v| points[v.index()]);
         inverse_mean_ratio(a, b, c)
     })
+}
+
+/// What a triangle adds to the excess.
+fn shortfall(a: Point2, b: Point2, c: Point2) -> f64 {
+    inverse_mean_ratio(a, b, c).powi(2) - 1.0
 }
 
 /// Sum of squared inverse mean ratios above 1.
