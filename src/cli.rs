@@ -12,6 +12,7 @@ pub mod explain;
 pub mod failure;
 pub mod forms;
 pub mod input;
+pub mod judged;
 pub mod mesh;
 pub mod mesh_file;
 pub mod outcome;
@@ -27,6 +28,7 @@ pub mod torture;
 pub mod verdict;
 pub mod voronoi;
 pub mod watch;
+pub mod words;
 
 use arguments::{Arguments, Verb};
 use clap::{CommandFactory, Parser};

@@ -166,6 +166,28 @@ pub struct DomainReading {
     pub farfield: Option<Farfield>,
 }
 
+/// The domain that a mesh is set against.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Against {
+    /// The domain that the mesh must cover, its boundary preserved.
+    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
+    pub domain: Option<PathBuf>,
+    /// Form of the domain, whatever its extension.
+    #[arg(long, value_name = "FORM", requires = "domain")]
+    pub domain_from: Option<String>,
+    /// Far-field circle, as it was given to `mesh`.
+    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
+    pub farfield: Option<Farfield>,
+}
+
+impl Against {
+    /// How the domain is read.
+    #[must_use]
+    pub fn reading(&self) -> DomainReading {
+        DomainReading { from: self.domain_from.clone(), farfield: self.farfield }
+    }
+}
+
 /// What the mesher is asked to do.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Meshing")]
@@ -534,15 +556,9 @@ pub struct CheckArguments {
     /// How the mesh is read.
     #[command(flatten)]
     pub reading: MeshReading,
-    /// The domain that the mesh must cover, its boundary preserved.
-    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
-    pub domain: Option<PathBuf>,
-    /// Form of the domain, whatever its extension.
-    #[arg(long, value_name = "FORM", requires = "domain")]
-    pub domain_from: Option<String>,
-    /// Far-field circle, as it was given to `mesh`.
-    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
-    pub farfield: Option<Farfield>,
+    /// What it must cover.
+    #[command(flatten)]
+    pub against: Against,
     /// The surface model that the mesh must be a mesh of.
     #[arg(long, value_name = "MODEL", value_hint = ValueHint::FilePath, conflicts_with = "domain")]
     pub surface: Option<PathBuf>,

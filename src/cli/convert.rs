@@ -2,15 +2,16 @@
 
 use super::arguments::{ConvertArguments, PlotArguments};
 use super::console::Console;
-use super::domain_file::load_domain;
+use super::domain_file::load_against;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, output_files};
-use super::mesh::count;
 use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
 use super::size_layers::{NodalSpacing, nodal_spacing};
 use super::verdict::check_mesh;
+use super::words::count;
+use crate::domain::Domain;
 use crate::domain::validate::validate;
 use crate::draw::{self, Highlight};
 use crate::format::MeshView;
@@ -56,8 +57,8 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
         last.map_or_else(|| name.clone(), |last| last.to_string_lossy().into_owned())
     };
     let title = arguments.title.clone().unwrap_or_else(file_name);
-    let (highlights, background) = match &arguments.domain {
-        Some(path) => against(&mesh, path, arguments)?,
+    let (highlights, background) = match load_against(&arguments.against)? {
+        Some((_, domain)) => against(&mesh, &domain),
         None => (Vec::new(), None),
     };
     let drawing = Drawing {
@@ -73,15 +74,10 @@ pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Fai
 }
 
 /// The findings of a mesh against its domain, and the domain's background mesh.
-fn against(
-    mesh: &MeshData,
-    path: &std::path::Path,
-    arguments: &PlotArguments,
-) -> Result<(Vec<Highlight>, Option<NodalSpacing>), Failure> {
-    let (_, domain) = load_domain(path, &arguments.domain_reading())?;
-    let report = check_mesh(mesh, Some(&domain));
-    let background = validate(&domain).ok().and_then(|plc| nodal_spacing(plc, &Options::default()));
-    Ok((draw::highlights(&report), background))
+fn against(mesh: &MeshData, domain: &Domain) -> (Vec<Highlight>, Option<NodalSpacing>) {
+    let report = check_mesh(mesh, Some(domain));
+    let background = validate(domain).ok().and_then(|plc| nodal_spacing(plc, &Options::default()));
+    (draw::highlights(&report), background)
 }
 
 fn write_files(

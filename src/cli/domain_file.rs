@@ -1,6 +1,6 @@
 //! Domain files: reading with the `.node` file beside a `.poly`, and telling faults.
 
-use super::arguments::DomainReading;
+use super::arguments::{Against, DomainReading};
 use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
 use super::input::{Input, is_dash, load};
 use crate::domain::validate::Fault;
@@ -33,6 +33,15 @@ pub fn load_domain(path: &Path, reading: &DomainReading) -> Result<(Input, Domai
     }
     let domain = outcome.map_err(|error| malformed(&input.name, &error))?;
     Ok((input, domain))
+}
+
+/// Reads the domain that a mesh is set against, if there is one.
+///
+/// # Errors
+/// As [`load_domain`].
+pub fn load_against(against: &Against) -> Result<Option<(Input, Domain)>, Failure> {
+    let reading = against.reading();
+    against.domain.as_ref().map(|path| load_domain(path, &reading)).transpose()
 }
 
 fn node_beside(poly: &Path) -> Option<Vec<u8>> {

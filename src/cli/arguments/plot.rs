@@ -1,6 +1,6 @@
 //! The flags of `trigrade plot`.
 
-use super::{DomainReading, MeshReading};
+use super::{Against, MeshReading};
 use crate::check::Metric;
 use crate::check::quality::metric::UnknownMetric;
 use crate::draw::View;
@@ -31,12 +31,9 @@ pub struct PlotArguments {
     /// The metric that colours triangles, by a name that `trigrade check --gate` knows, or `none`.
     #[arg(long, value_name = "METRIC|none", default_value = "radius_ratio")]
     pub colour: Colour,
-    /// Mark what `check` finds against this domain; a viewer shows its background mesh too.
-    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
-    pub domain: Option<PathBuf>,
-    /// Form of the domain, whatever its extension.
-    #[arg(long, value_name = "FORM", requires = "domain")]
-    pub domain_from: Option<String>,
+    /// What it must cover: findings are marked, and a viewer shows the background mesh too.
+    #[command(flatten)]
+    pub against: Against,
     /// Draw only this part of the plane.
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
     pub window: Option<View>,
@@ -47,14 +44,6 @@ pub struct PlotArguments {
     #[arg(long, value_name = "PIXELS", default_value_t = 1200)]
     #[arg(value_parser = clap::value_parser!(u32).range(16..=20_000))]
     pub width: u32,
-}
-
-impl PlotArguments {
-    /// How the domain is read.
-    #[must_use]
-    pub fn domain_reading(&self) -> DomainReading {
-        DomainReading { from: self.domain_from.clone(), farfield: None }
-    }
 }
 
 /// `--colour`: a metric, or none.
