@@ -10,9 +10,12 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::said;
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -95,16 +98,14 @@ impl Session {
     }
 
     fn trigrade(&mut self, arguments: &[&str]) -> String {
-        let run = Command::new(env!("CARGO_BIN_EXE_trigrade"))
+        let run = program::program()
             .args(arguments)
             .current_dir(self.folder.path())
             .env_remove("GITHUB_ACTIONS")
             .output()
             .expect("the program runs");
         self.exit = run.status.code().expect("an exit code");
-        let [out, complaints] =
-            [run.stdout, run.stderr].map(|b| String::from_utf8_lossy(&b).into_owned());
-        out + &complaints
+        said(&run)
     }
 }
 

@@ -196,7 +196,7 @@ mod tests {
         Judged::new(name, check_mesh(mesh, None), ())
     }
 
-    // spec: K2
+    // spec: K2 K41
     #[test]
     fn the_first_mesh_that_does_not_pass_is_told_else_the_first() {
         let meshes = meshes();
