@@ -3,6 +3,7 @@
 use super::arguments::{Against, DomainReading};
 use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
 use super::input::{Input, is_dash, load};
+use super::words::did_you_mean;
 use crate::domain::validate::Fault;
 use crate::domain::{Domain, Place};
 use crate::format::airfoil::FarField;
@@ -52,7 +53,8 @@ fn node_beside(poly: &Path) -> Option<Vec<u8>> {
 fn form_of(path: &Path, said: Option<&str>) -> Result<DomainForm, Failure> {
     if let Some(name) = said {
         return DomainForm::from_extension(name).ok_or_else(|| {
-            let message = format!("there is no form of domain `{name}`");
+            let near = did_you_mean(name, FORMS.split(", "));
+            let message = format!("there is no form of domain `{name}`{near}");
             Failure::cannot_run(Diagnostic::new(message).help(format!("there are {FORMS}")))
         });
     }

@@ -5,6 +5,7 @@ use super::console::Console;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
+use super::words::did_you_mean;
 use crate::torture::export::BoundaryForm;
 use crate::torture::generate::{Selection, families};
 use crate::torture::report;
@@ -77,15 +78,16 @@ fn watched(
 }
 
 fn plan(arguments: &TortureArguments) -> Result<Plan, Failure> {
-    let families = arguments.family.clone();
-    if let Some(unknown) = families.iter().find(|name| !crate_has(name)) {
-        let message = format!("there is no family `{unknown}`");
+    let wanted = arguments.family.clone();
+    if let Some(unknown) = wanted.iter().find(|name| !is_family(name)) {
+        let near = did_you_mean(unknown, families().map(|family| family.name));
+        let message = format!("there is no family `{unknown}`{near}");
         let help = "`trigrade torture --list` names all of them";
         return Err(Failure::cannot_run(Diagnostic::new(message).help(help)));
     }
     let selection = Selection {
         seed: arguments.seed,
-        families,
+        families: wanted,
         size_max: arguments.max_size as usize,
         plain: arguments.plain,
     };
@@ -103,7 +105,7 @@ fn plan(arguments: &TortureArguments) -> Result<Plan, Failure> {
     })
 }
 
-fn crate_has(name: &str) -> bool {
+fn is_family(name: &str) -> bool {
     families().any(|family| family.name == name)
 }
 
@@ -143,7 +145,8 @@ fn tool(arguments: &TortureArguments) -> Result<Tool, Failure> {
 fn preset(name: &str) -> Result<Tool, Failure> {
     let preset = Preset::named(name).ok_or_else(|| {
         let known = PRESETS.map(|preset| preset.name).join(", ");
-        let message = format!("there is no preset `{name}`");
+        let near = did_you_mean(name, PRESETS.map(|preset| preset.name));
+        let message = format!("there is no preset `{name}`{near}");
         Failure::cannot_run(Diagnostic::new(message).help(format!("there are {known}")))
     })?;
     let program = std::env::current_exe()

@@ -23,6 +23,40 @@ pub fn boundary(edges: u64) -> String {
     }
 }
 
+/// The candidate at the smallest edit distance, if that is at most a third of the word (and not
+/// the word itself); the first in alphabetical order among equals.
+#[must_use]
+pub fn nearest<'a>(wanted: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .map(|name| (edit_distance(wanted, name), name))
+        .filter(|&(distance, _)| distance > 0 && distance <= wanted.chars().count().div_ceil(3))
+        .min()
+        .map(|(_, name)| name)
+}
+
+/// Levenshtein distance, ignoring case.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.to_lowercase().chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.to_lowercase().chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, &cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// What to say when `wanted` is none of the words known, but near to one of them: `; did you mean
+/// `growth`?`, or nothing.
+#[must_use]
+pub fn did_you_mean<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let near = nearest(wanted, known.into_iter());
+    near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,5 +73,27 @@ mod tests {
     #[test]
     fn a_surface_without_a_boundary_is_closed() {
         assert_eq!([boundary(0), boundary(12345)], ["closed", "12,345 boundary edges"]);
+    }
+
+    #[test]
+    fn edit_distances() {
+        for (a, b, distance) in
+            [("", "", 0), ("abc", "", 3), ("kitten", "sitting", 3), ("Off", "oFF", 0)]
+        {
+            assert_eq!(edit_distance(a, b), distance, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn far_words_are_not_suggested() {
+        assert_eq!(nearest("wing.poly", ["plate.json", "lake.poly"].into_iter()), None);
+        assert_eq!(nearest("M33", ["M3", "M13", "D1"].into_iter()), Some("M13"));
+    }
+
+    // spec: K42
+    #[test]
+    fn near_words_are_suggested() {
+        assert_eq!(did_you_mean("grwoth", ["mean", "growth"]), "; did you mean `growth`?");
+        assert_eq!(did_you_mean("0.1*x", ["mean", "growth"]), "");
     }
 }

@@ -1,8 +1,7 @@
 //! The flags of `trigrade plot`.
 
-use super::{Against, MeshReading};
+use super::{Against, MeshReading, metric_meant};
 use crate::check::Metric;
-use crate::check::quality::metric::UnknownMetric;
 use crate::draw::View;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -51,10 +50,14 @@ pub struct PlotArguments {
 pub struct Colour(pub Option<Metric>);
 
 impl FromStr for Colour {
-    type Err = UnknownMetric;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, UnknownMetric> {
-        if text.trim() == "none" { Ok(Self(None)) } else { text.parse().map(|m| Self(Some(m))) }
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim() == "none" {
+            return Ok(Self(None));
+        }
+        let metric = text.parse::<Metric>().map_err(|e| format!("{e}{}", metric_meant(text)))?;
+        Ok(Self(Some(metric)))
     }
 }
 
@@ -67,6 +70,6 @@ mod tests {
         assert_eq!("none".parse(), Ok(Colour(None)));
         assert_eq!("min-angle".parse(), Ok(Colour(Some(Metric::MinAngle))));
         let error = "beauty".parse::<Colour>().expect_err("no metric");
-        assert!(error.to_string().contains("radius_ratio"), "{error}");
+        assert!(error.contains("radius_ratio"), "{error}");
     }
 }
