@@ -8,7 +8,7 @@ mod arc;
 pub mod basis;
 pub mod discretize;
 
-use crate::vector::{Vector, add, distance, key, scale, sub};
+use crate::vector::{Vector, add, key, scale, sub};
 use basis::{Basis, DEGREE_MAX};
 
 /// A curve.
@@ -470,10 +470,4 @@ pub fn piece_knots(knots: &[f64], degree: usize, from: usize, to: usize) -> Vec<
         piece[last] = piece[last - 1];
     }
     piece
-}
-
-/// Length of the polygon of control points: an upper bound of the curve's length.
-#[must_use]
-pub fn polygon_length(points: &[Vector]) -> f64 {
-    points.windows(2).map(|pair| distance(pair[0], pair[1])).sum()
 }

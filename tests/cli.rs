@@ -669,3 +669,23 @@ fn misspelt_words_are_met_by_those_that_were_meant() {
     assert!(!err(&output).contains("did you mean"), "{}", err(&output));
     assert_eq!(names(path), ["square.poly"]);
 }
+
+// spec: K43
+#[test]
+fn of_many_faults_the_first_forty_are_printed_and_all_reported() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let path = folder.path();
+    // Fifty points far out, each given twice.
+    let pairs: Vec<String> = (0..100).map(|i| format!("{} {} 9\n", i + 5, i / 2)).collect();
+    let head = "104 2 0 0\n1 -9 -9\n2 99 -9\n3 99 99\n4 -9 99\n";
+    let text = format!("{head}{}4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n", pairs.concat());
+    fs::write(path.join("twins.poly"), text).expect("written");
+    let line = ["mesh", "twins.poly", "-o", "a.off", "--report", "json=report.json"];
+    let output = run_in(path, &line);
+    assert_exit(&output, 1);
+    assert_eq!(err(&output).matches("error[").count(), 40, "{}", err(&output));
+    assert!(err(&output).contains("... and 10 more"), "{}", err(&output));
+    let report = fs::read(path.join("report.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    assert_eq!(report["errors"].as_array().map(Vec::len), Some(50));
+}

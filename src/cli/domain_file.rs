@@ -10,9 +10,6 @@ use crate::format::airfoil::FarField;
 use crate::format::domain_file::{DomainForm, DomainReadError, Problem, ReadOptions, read_domain};
 use std::path::Path;
 
-/// At most this many faults are printed; the JSON report has all of them.
-pub const FAULTS_PRINTED: usize = 40;
-
 /// The names of the forms, for messages.
 const FORMS: &str = "poly, json, geojson, dat";
 
