@@ -11,7 +11,7 @@ use crate::torture::generate::{Selection, families};
 use crate::torture::report;
 use crate::torture::run::{
     Limits, PRESETS, Plan, Preset, Record, Run, RunError, Running, Tool, ToolError, read_corpus,
-    replay, run,
+    replay, run as run_all,
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// # Errors
 /// Exit code 2: the mesher cannot be started, a name is unknown, a folder cannot be used.
-pub fn torture(
+pub fn run(
     arguments: &TortureArguments,
     console: &Console,
     cleanup: &Cleanup,
@@ -42,7 +42,7 @@ pub fn torture(
             let corpus = read_corpus(folder).map_err(|error| cannot_run(&error.into()))?;
             watched(console, corpus.cases.len() as u64, |progress| replay(&plan, &corpus, progress))
         }
-        None => watched(console, plan.cases, |progress| run(&plan, progress)),
+        None => watched(console, plan.cases, |progress| run_all(&plan, progress)),
     };
     let run = run.map_err(|error| cannot_run(&error))?;
     if let Some(out) = &plan.out {
