@@ -12,10 +12,12 @@ pub mod explain;
 pub mod failure;
 pub mod forms;
 pub mod input;
+pub mod judged;
 pub mod mesh;
 pub mod mesh_file;
 pub mod outcome;
 pub mod output;
+pub mod plot;
 pub mod point_file;
 pub mod refinement;
 pub mod remesh;
@@ -27,6 +29,7 @@ pub mod torture;
 pub mod verdict;
 pub mod voronoi;
 pub mod watch;
+pub mod words;
 
 use arguments::{Arguments, Verb};
 use clap::{CommandFactory, Parser};
@@ -83,9 +86,9 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Delaunay(delaunay) => return delaunay::run(delaunay, console, cleanup),
         Verb::Voronoi(arguments) => return voronoi::run(arguments, console, cleanup),
         Verb::Demo(demo) => return demo::run(demo, console, cleanup),
-        Verb::Convert(convert) => return convert::convert(convert, console, cleanup),
-        Verb::Plot(plot) => return convert::plot(plot, cleanup),
-        Verb::Torture(torture) => return torture::torture(torture, console, cleanup),
+        Verb::Convert(convert) => return convert::run(convert, console, cleanup),
+        Verb::Plot(plot) => return plot::run(plot, cleanup),
+        Verb::Torture(torture) => return torture::run(torture, console, cleanup),
         Verb::Compare(compare) => return compare::run(compare, cleanup),
         Verb::Study(study) => return study::run(study, console, cleanup),
         Verb::Explain(explain) => explain::run(explain.id.as_deref(), console)?,

@@ -8,7 +8,7 @@ mod arc;
 pub mod basis;
 pub mod discretize;
 
-use crate::vector::{Vector, add, distance, key, scale, sub};
+use crate::vector::{Vector, add, key, scale, sub};
 use basis::{Basis, DEGREE_MAX};
 
 /// A curve.
@@ -16,6 +16,16 @@ use basis::{Basis, DEGREE_MAX};
 /// # Shapes and units
 /// `knots: [points + degree + 1]`, rising; the parameter runs from `knots[degree]` to
 /// `knots[points]`. `weights` is empty (all 1) or one a control point.
+///
+/// ```
+/// use trigrade::curve::Curve;
+/// // A parabola: one quadratic piece, from its first control point to its last.
+/// let points = vec![[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [2.0, 0.0, 0.0]];
+/// let curve = Curve::clamped(2, points)?;
+/// assert_eq!(curve.at(0.5), [1.0, 1.0, 0.0]);
+/// assert_eq!(curve.ends(), [[0.0; 3], [2.0, 0.0, 0.0]]);
+/// # Ok::<(), trigrade::curve::CurveError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     degree: usize,
@@ -460,10 +470,4 @@ pub fn piece_knots(knots: &[f64], degree: usize, from: usize, to: usize) -> Vec<
         piece[last] = piece[last - 1];
     }
     piece
-}
-
-/// Length of the polygon of control points: an upper bound of the curve's length.
-#[must_use]
-pub fn polygon_length(points: &[Vector]) -> f64 {
-    points.windows(2).map(|pair| distance(pair[0], pair[1])).sum()
 }

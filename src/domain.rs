@@ -192,14 +192,6 @@ impl Domain {
             .or_else(|| BoundingBox::of(self.points.iter().copied()))
     }
 
-    /// Sum of the lengths of all loop edges and free segments, rounded; it ranks, never decides.
-    #[must_use]
-    pub fn boundary_length(&self) -> f64 {
-        let point = |i: u32| self.points.get(i as usize).copied();
-        let length = |[a, b]: [u32; 2]| Some(point(a)?.distance(point(b)?));
-        self.edges().filter_map(length).sum()
-    }
-
     /// End points of every loop edge, loop by loop, then of every free segment.
     pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         let loops = self.loops.iter().flat_map(Loop::edges);

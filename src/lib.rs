@@ -32,15 +32,20 @@
 //! | mesh a domain | [`Mesher`], [`mesher`] |
 //! | check anybody's mesh | [`check`] |
 //! | triangulate points | [`triangulate`], [`delaunay`], [`voronoi`] |
-//! | mesh a surface | [`surface_mesher`], [`model`] |
+//! | mesh a surface | [`surface_mesher`], [`model`], [`remesh`](mod@remesh) |
 //! | read and write files | [`mod@format`] |
 //! | draw | [`draw`] |
 //! | torture a mesher | [`torture`] |
 //!
 //! # Features
 //!
-//! `cli` (default) is the program and what only it needs; `png` draws PNG pictures. Without either,
-//! the library needs no C compiler, no network and no files.
+//! | feature | what it brings |
+//! |---|---|
+//! | `cli` (default) | the program and what only it needs; without it the library stays small |
+//! | `png` | PNG pictures, with a font built in |
+//! | `arbitrary`, `proptest`, `quickcheck` | the boundaries of [`torture`] as values of these frameworks |
+//!
+//! None of them needs a C compiler, and the library without `cli` compiles for WebAssembly.
 //!
 //! The guarantees, each with its strength and its test, are in `SPEC.md`.
 

@@ -67,7 +67,22 @@ pub struct OtherCells {
     pub count: u64,
 }
 
-/// A mesh file as it was read: nothing repaired, nothing dropped.
+/// A mesh file as it was read, or anybody's arrays: nothing repaired, nothing dropped.
+///
+/// ```
+/// use trigrade::check::check;
+/// use trigrade::mesh::MeshData;
+/// let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = |triangles: &[[u32; 3]]| MeshData {
+///     points: points.clone(),
+///     triangles: triangles.to_vec(),
+///     ..MeshData::default()
+/// };
+/// let report = |mesh: &MeshData| check(mesh, None, &Default::default());
+/// assert!(report(&mesh(&[[0, 1, 2], [0, 2, 3]])).passed());
+/// // Two triangles that lie over each other.
+/// assert!(!report(&mesh(&[[0, 1, 2], [0, 1, 3]])).passed());
+/// ```
 ///
 /// # Shapes and units
 /// `points: [n][3]`, z = 0 where the file has two coordinates; `triangles: [m][3]`, in the file's

@@ -6,6 +6,23 @@ use crate::surface::Surface;
 use std::collections::BTreeMap;
 
 /// A surface model.
+///
+/// ```
+/// use trigrade::mesher::Unobserved;
+/// use trigrade::model::{Model, Patch};
+/// use trigrade::surface::{Surface, Tensor};
+/// use trigrade::surface_mesher::{SurfaceOptions, mesh_model};
+///
+/// let rows = [
+///     vec![[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+///     vec![[1.0, 0.0, 0.0], [1.0, 1.0, 1.0]],
+/// ];
+/// let patch = Patch::plain(0, Surface::Tensor(Tensor::bezier(&rows)?));
+/// let model = Model { patches: vec![patch], spacing: Some(0.25), ..Model::default() };
+/// let meshed = mesh_model(&model, &SurfaceOptions::default(), &mut Unobserved)?;
+/// assert!(meshed.mesh.triangles.len() > 20);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// The patches. Sides of different patches (or of one: a seam) that are the same curve to the

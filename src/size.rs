@@ -46,6 +46,17 @@ pub struct Base {
 }
 
 /// A size field.
+///
+/// The mesher makes its own from a domain and the options; one can be asked by hand, too:
+///
+/// ```
+/// use trigrade::point::Point2;
+/// use trigrade::size::{GrowthField, Source};
+/// // A node with spacing 0.1, from which the spacing grows by 0.25 a unit of length.
+/// let field = GrowthField::new(&[Source { at: Point2::new(0.0, 0.0), spacing: 0.1 }], 0.25);
+/// assert_eq!(field.at(Point2::new(0.0, 0.0)), 0.1);
+/// assert!((field.at(Point2::new(3.0, 4.0)) - 1.35).abs() < 1e-12);
+/// ```
 #[derive(Debug)]
 pub enum SizeField {
     /// The same length everywhere.

@@ -4,6 +4,25 @@
 //! Points are parameters: of the plane itself, or (u, v) of a patch. What a length is the
 //! [`Chart`] says.
 
+//!
+//! ```
+//! use trigrade::point::Point2;
+//! use trigrade::structured::{Sides, fractions, transfinite};
+//! // The unit square with two edges below and above, one left and right.
+//! let around = [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0), (0.0, 1.0)];
+//! let around = around.map(|(x, y)| Point2::new(x, y));
+//! let sides = Sides::of_loop(&around, [0, 2, 3, 5]);
+//! let along = Sides {
+//!     south: fractions(&sides.south, |a, b| b.x - a.x),
+//!     east: vec![0.0, 1.0],
+//!     north: fractions(&sides.north, |a, b| b.x - a.x),
+//!     west: vec![0.0, 1.0],
+//! };
+//! let grid = transfinite(&sides, &along);
+//! assert_eq!((grid.columns, grid.rows), (2, 1));
+//! assert_eq!(grid.at(1, 1), Point2::new(0.5, 1.0));
+//! ```
+
 mod transfinite;
 mod winslow;
 

@@ -4,6 +4,17 @@
 //! study needs no input ([`domains`]). Each is meshed by six systems ([`System`]) in three settings
 //! ([`Setting`]). The figures of a mesh ([`Figures`]) come from the checker, which knows nothing of
 //! the mesher; statements are judged from the figures alone ([`mod@claims`]).
+//!
+//! ```
+//! use trigrade::mesh::MeshData;
+//! use trigrade::study::{DOMAINS, Detail, Setting, System, figures, mesh};
+//!
+//! let domain = (DOMAINS[0].make)(Detail::Small);
+//! let meshed = mesh(&domain, &System::Graded.options(Setting::Own, 0))?;
+//! let figures = figures(&MeshData::from(&meshed.mesh), &domain).expect("quality is measured");
+//! assert!(figures.passed && figures.ratio_mean < 1.1);
+//! # Ok::<(), trigrade::mesher::MeshError>(())
+//! ```
 
 pub mod chart;
 pub mod claims;

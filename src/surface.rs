@@ -19,6 +19,22 @@ use crate::curve::{Curve, CurveError};
 use crate::vector::Vector;
 
 /// A surface patch.
+///
+/// ```
+/// use trigrade::metric::{FirstForm, normal};
+/// use trigrade::surface::{Surface, Tensor};
+/// // A bilinear patch over the unit square, one corner lifted.
+/// let rows = [
+///     vec![[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], // u = 0
+///     vec![[1.0, 0.0, 0.0], [1.0, 1.0, 1.0]], // u = 1
+/// ];
+/// let patch = Surface::Tensor(Tensor::bezier(&rows)?);
+/// assert_eq!(patch.at(0.5, 0.5), [0.5, 0.5, 0.25]);
+/// let tangents = patch.tangents(0.0, 0.0);
+/// assert_eq!(normal(&tangents), Some([0.0, 0.0, 1.0]));
+/// assert_eq!(FirstForm::new(&tangents).area(), 1.0);
+/// # Ok::<(), trigrade::surface::SurfaceError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Surface {
     /// Tensor product of B-splines or NURBS.

@@ -5,7 +5,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::{assert_exit, err, names, out, program, run};
+use program::{assert_exit, err, names, out, program, run, run_in};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -630,4 +630,62 @@ fn committed_examples_can_be_meshed() {
         let output = run(&["mesh", &path, "-o", "-", "--form", "off", "--quiet"]);
         assert_exit(&output, 0);
     }
+}
+
+// spec: K42
+#[test]
+fn misspelt_words_are_met_by_those_that_were_meant() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let path = folder.path();
+    fs::write(
+        path.join("square.poly"),
+        "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n",
+    )
+    .expect("written");
+    let slips = [
+        ("mseh square.poly -o a.msh", "mesh"),
+        ("mesh square.poly -o a.msh --gradtion mean", "--gradation"),
+        ("mesh square.poly -o a.msh --method grade", "graded"),
+        ("mesh square.poly -o a.msh --gradation grwoth", "did you mean `growth`?"),
+        ("mesh sqare.poly -o a.msh", "did you mean `square.poly`?"),
+        ("mesh square.poly -o a.mhs", "did you mean `msh`?"),
+        ("mesh square.poly -o a.msh --form ofg", "did you mean `off`?"),
+        ("mesh square.poly --from poyl -o a.msh", "did you mean `poly`?"),
+        ("mesh square.poly -o a.msh --report jnit=b.xml", "did you mean `junit`?"),
+        ("check a.msh --gate min_agle>=3", "did you mean `min_angle`?"),
+        ("plot a.msh -o a.svg --colour min_agle", "did you mean `min_angle`?"),
+        ("torture --preset gmhs", "did you mean `gmsh`?"),
+        ("torture --family star", "did you mean `stars`?"),
+        ("explain cli.did-you-man", "did you mean `cli.did-you-mean`?"),
+    ];
+    for (line, meant) in slips {
+        let output = run_in(path, &line.split_whitespace().collect::<Vec<_>>());
+        assert_exit(&output, 2);
+        assert!(err(&output).contains(meant), "{line}: {}", err(&output));
+    }
+    // What is far from every word is met by none.
+    let output = run_in(path, &["mesh", "square.poly", "-o", "a.msh", "--gradation", "nonsense"]);
+    assert_exit(&output, 2);
+    assert!(!err(&output).contains("did you mean"), "{}", err(&output));
+    assert_eq!(names(path), ["square.poly"]);
+}
+
+// spec: K43
+#[test]
+fn of_many_faults_the_first_forty_are_printed_and_all_reported() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let path = folder.path();
+    // Fifty points far out, each given twice.
+    let pairs: Vec<String> = (0..100).map(|i| format!("{} {} 9\n", i + 5, i / 2)).collect();
+    let head = "104 2 0 0\n1 -9 -9\n2 99 -9\n3 99 99\n4 -9 99\n";
+    let text = format!("{head}{}4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n", pairs.concat());
+    fs::write(path.join("twins.poly"), text).expect("written");
+    let line = ["mesh", "twins.poly", "-o", "a.off", "--report", "json=report.json"];
+    let output = run_in(path, &line);
+    assert_exit(&output, 1);
+    assert_eq!(err(&output).matches("error[").count(), 40, "{}", err(&output));
+    assert!(err(&output).contains("... and 10 more"), "{}", err(&output));
+    let report = fs::read(path.join("report.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    assert_eq!(report["errors"].as_array().map(Vec::len), Some(50));
 }

@@ -7,11 +7,12 @@
 
 #[path = "golden/domains.rs"]
 mod domains;
+#[path = "common/program.rs"]
+mod program;
 
 use domains::{GOLDENS, Golden};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
@@ -42,7 +43,7 @@ fn assert_golden(path: &Path, new: &str) {
 }
 
 fn mesh(golden: &Golden, more: &[&str]) -> String {
-    let run = Command::new(env!("CARGO_BIN_EXE_trigrade"))
+    let run = program::program()
         .args(["mesh", "--quiet", "--form", "off", "-o", "-"])
         .args(golden.options)
         .args(more)

@@ -10,9 +10,12 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::said;
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -95,16 +98,14 @@ impl Session {
     }
 
     fn trigrade(&mut self, arguments: &[&str]) -> String {
-        let run = Command::new(env!("CARGO_BIN_EXE_trigrade"))
+        let run = program::program()
             .args(arguments)
             .current_dir(self.folder.path())
             .env_remove("GITHUB_ACTIONS")
             .output()
             .expect("the program runs");
         self.exit = run.status.code().expect("an exit code");
-        let [out, complaints] =
-            [run.stdout, run.stderr].map(|b| String::from_utf8_lossy(&b).into_owned());
-        out + &complaints
+        said(&run)
     }
 }
 
@@ -225,6 +226,49 @@ fn every_command_of_the_guide_prints_what_the_page_shows() {
     }
     assert!(commands >= 20, "only {commands} commands: the guide was not found");
     assert!(all.is_empty(), "{}", all.join("\n\n"));
+}
+
+/// A row of README's table of meshers as the program gives it; `None` for those of other meshers.
+fn row_of(line: &str) -> Option<String> {
+    let name = line.strip_prefix('|')?.split('|').next()?.trim();
+    let is_bold = name.starts_with("**");
+    let flags = name.trim_matches('*').strip_prefix("trigrade mesh")?;
+    let domain = root().join("examples/domains/naca0012.poly");
+    let fixed = ["mesh", domain.to_str()?, "-o", "-", "--form", "off", "--report", "json=r.json"];
+    let arguments: Vec<&str> = fixed.into_iter().chain(flags.split_whitespace()).collect();
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let output = program::run_in(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", program::err(&output));
+    let report = fs::read(folder.path().join("r.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    let triangles = report["triangles"].as_u64()?;
+    let triangles = format!("{},{:03}", triangles / 1000, triangles % 1000);
+    let [mean, p99, max] = ["mean", "p99", "max"].map(|key| report["quality"][key].as_f64());
+    let figures = [format!("{:.3}", mean?), format!("{:.3}", p99?), format!("{:.2}", max?)];
+    let bold = |text: &str| if is_bold { format!("**{text}**") } else { text.to_owned() };
+    let [mean, p99, max] = figures.each_ref().map(|figure| bold(figure));
+    Some(format!("| {name} | {triangles} | {mean} | {p99} | {max} |"))
+}
+
+#[test]
+fn the_figures_of_the_readme_are_those_of_the_program() {
+    let path = root().join("README.md");
+    let text = fs::read_to_string(&path).expect("README.md");
+    let (mut page, mut rows, mut wrong) = (String::new(), 0, Vec::new());
+    for line in text.lines() {
+        let row = row_of(line).unwrap_or_else(|| line.to_owned());
+        rows += usize::from(line.contains("| **trigrade mesh"));
+        if row != line {
+            wrong.push(format!("{line}\n  now {row}"));
+        }
+        page += &format!("{row}\n");
+    }
+    if std::env::var_os("UPDATE_GUIDE").is_some() {
+        fs::write(&path, page).expect("README.md can be written");
+    } else {
+        assert!(wrong.is_empty(), "UPDATE_GUIDE=1 writes them:\n{}", wrong.join("\n"));
+    }
+    assert!(rows >= 2, "the table is there");
 }
 
 #[test]

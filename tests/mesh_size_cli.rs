@@ -2,10 +2,14 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{assert_exit, err, json, run_in};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// A square of side 4 with ten segments a side, markers 1 to 4, in Triangle's form.
 fn square() -> String {
@@ -30,12 +34,7 @@ fn square() -> String {
 const VIEW: &str = "View \"h\" {\nSQ(0,0,0,4,0,0,4,4,0,0,4,0){0.1,0.3,0.3,0.1};\n};\n";
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trigrade"))
-        .args(["mesh", "square.poly", "--json"])
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the program runs")
+    run_in(folder, &[&["mesh", "square.poly", "--json"], arguments].concat())
 }
 
 fn folder() -> tempfile::TempDir {
@@ -47,9 +46,8 @@ fn folder() -> tempfile::TempDir {
 
 #[track_caller]
 fn summary(output: &Output) -> Value {
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    serde_json::from_slice(&output.stdout).expect("JSON")
+    assert_exit(output, 0);
+    json(output)
 }
 
 // spec: K10
@@ -86,8 +84,8 @@ fn counts_are_predicted_chosen_and_coarsened() {
     assert!((count / 2500.0 - 1.0).abs() <= 0.05, "{count}");
     let limit = ["--spacing", "0.02", "--max-triangles", "3000", "-o", "out.off"];
     let refused = run(folder.path(), &limit);
-    assert_eq!(refused.status.code(), Some(2));
-    let errors = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_exit(&refused, 2);
+    let errors = err(&refused);
     assert!(errors.contains("--coarsen") && errors.contains("--dry-run"), "{errors}");
     let coarsened = summary(&run(folder.path(), &[&limit[..], &["--coarsen"]].concat()));
     assert!(coarsened["triangles"].as_u64().unwrap() <= 3000, "{coarsened}");
@@ -111,9 +109,8 @@ fn senseless_sizes_are_exit_2_and_name_what_is_wrong() {
     ];
     for (arguments, word) in wrong {
         let output = run(folder.path(), &[arguments, &["-o", "out.off"]].concat());
-        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-        assert!(errors.contains(word), "{arguments:?}: {errors}");
+        assert_exit(&output, 2);
+        assert!(err(&output).contains(word), "{arguments:?}: {}", err(&output));
         assert!(!folder.path().join("out.off").exists(), "{arguments:?} left a file");
     }
 }
@@ -123,15 +120,10 @@ fn senseless_sizes_are_exit_2_and_name_what_is_wrong() {
 fn a_mesh_made_by_a_field_fits_it_when_checked() {
     let folder = folder();
     let _ = summary(&run(folder.path(), &["--size-field", "size.pos", "-o", "out.off"]));
-    let check = |field: &str| {
-        Command::new(env!("CARGO_BIN_EXE_trigrade"))
-            .args(["check", "out.off", "--json", "--size", field])
-            .current_dir(folder.path())
-            .output()
-            .expect("the program runs")
-    };
+    let check =
+        |field: &str| run_in(folder.path(), &["check", "out.off", "--json", "--size", field]);
     let report = summary(&check("size.pos"));
     let median = report["edge_length_over_spacing"]["median"].as_f64().unwrap();
     assert!((0.8..1.2).contains(&median), "{median}");
-    assert_eq!(check("absent.pos").status.code(), Some(2));
+    assert_exit(&check("absent.pos"), 2);
 }

@@ -1,5 +1,9 @@
 //! Delaunay refinement and the splitting of the boundary as a whole: what SPEC chapter 18 says.
 
+#[cfg(feature = "cli")]
+#[path = "common/program.rs"]
+mod program;
+
 use num_rational::BigRational;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -493,9 +497,10 @@ fn an_even_boundary_is_left_alone() {
 }
 
 #[cfg(feature = "cli")]
-mod program {
+mod command_line {
+    use super::program::{assert_exit, program, said};
     use std::path::Path;
-    use std::process::{Command, Output};
+    use std::process::Output;
 
     fn jump() -> String {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/jump.poly");
@@ -503,18 +508,13 @@ mod program {
     }
 
     fn run(arguments: &str, more: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_trigrade"))
-            .args(arguments.split_whitespace())
-            .args(more)
-            .output()
-            .expect("the program runs")
+        program().args(arguments.split_whitespace()).args(more).output().expect("the program runs")
     }
 
     #[track_caller]
     fn assert_says(output: &Output, code: i32, words: &[&str]) {
-        let text = [&output.stdout, &output.stderr].map(|s| String::from_utf8_lossy(s)).concat();
-        assert_eq!(output.status.code(), Some(code), "{text}");
-        assert!(!text.contains("panicked"), "{text}");
+        assert_exit(output, code);
+        let text = said(output);
         for word in words {
             assert!(text.contains(word), "`{word}` is not in {text}");
         }

@@ -2,24 +2,22 @@
 
 #![cfg(feature = "cli")]
 
-use serde_json::Value;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{assert_exit, json, run_in, said};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn run(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trigrade"))
-        .args(line.split_whitespace())
-        .current_dir(folder)
-        .output()
-        .expect("the program runs")
+    run_in(folder, &line.split_whitespace().collect::<Vec<_>>())
 }
 
+#[track_caller]
 fn told(output: &Output, exit: i32) -> String {
-    let told = String::from_utf8_lossy(&output.stderr).into_owned()
-        + &String::from_utf8_lossy(&output.stdout);
-    assert_eq!(output.status.code(), Some(exit), "{told}");
-    told
+    assert_exit(output, exit);
+    said(output)
 }
 
 /// The unit cube as OFF, with its quadrilaterals or with triangles.
@@ -51,9 +49,9 @@ fn a_cube_is_remeshed_in_every_form_and_again() {
     assert!(text.contains("Euler number 2, closed"), "{text}");
     for form in ["stl", "msh", "vtu", "ply", "obj"] {
         told(&run(path, &format!("check a.{form} --closed --max-aspect 2")), 0);
-        let json = run(path, &format!("remesh a.{form} --spacing 0.3 -o b.off --json"));
-        told(&json, 0);
-        let json: Value = serde_json::from_slice(&json.stdout).expect("JSON");
+        let again = run(path, &format!("remesh a.{form} --spacing 0.3 -o b.off --json"));
+        assert_exit(&again, 0);
+        let json = json(&again);
         assert_eq!(json["verdict"], "passed");
         assert_eq!(json["features"]["corners"], 8);
         assert_eq!(json["euler"], 2);
@@ -123,7 +121,7 @@ fn grids_are_meshed_checked_and_told() {
     let text = told(&run(path, "mesh square.poly --method transfinite -o a.msh"), 0);
     assert!(text.contains("8 x 5 cells") && text.contains("80 triangles"), "{text}");
     let line = "mesh square.poly --method elliptic --corners 0,8,13,21 -o a.vtu --json";
-    let json: Value = serde_json::from_slice(&run(path, line).stdout).expect("JSON");
+    let json = json(&run(path, line));
     assert_eq!(json["grid"]["columns"], 8);
     assert!(json["grid"]["residual"].as_f64().expect("a number") < 1e-9);
     told(&run(path, "check a.vtu --domain square.poly"), 0);

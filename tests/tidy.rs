@@ -138,8 +138,8 @@ fn no_stage_reads_a_later_one() {
         "triangulate",
         "voronoi",
         "size",
-        "structured",
         "skin",
+        "structured",
         "front",
         "improve",
         "mesher",
@@ -243,6 +243,59 @@ fn files_are_read_and_written_in_format_and_cli_only() {
             let bad = bad.iter().find(|word| code.contains(**word));
             assert!(bad.is_none(), "{name}:{line}: input and output live in format and cli");
         }
+    }
+}
+
+// spec: K40
+#[test]
+fn what_only_one_system_has_stands_behind_a_condition() {
+    const PARTICULAR: [&str; 5] =
+        ["std::os::unix", "std::os::windows", "std::os::linux", "rustix::", "/proc/"];
+    // An item is as long as a screen at most: its condition is not far above.
+    const NEAR: usize = 30;
+    let folders = ["src", "tests"].map(|folder| files(&root().join(folder), &["rs"]));
+    for path in folders.into_iter().flatten().filter(|path| !path.ends_with("tests/tidy.rs")) {
+        let text = read(&path);
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let is_conditional = |line: &&str| line.starts_with("#[cfg(") && !line.contains("(test)");
+        for (i, line) in lines.iter().enumerate() {
+            let Some(word) = PARTICULAR.iter().find(|word| line.contains(**word)) else { continue };
+            let above = &lines[i.saturating_sub(NEAR)..i];
+            assert!(
+                lines[..20.min(i)].iter().any(|line| line.starts_with("#![cfg("))
+                    || above.iter().any(|line| is_conditional(&line)),
+                "{}:{}: `{word}` without #[cfg(unix)] or the like",
+                name(&path),
+                i + 1
+            );
+        }
+    }
+    let text = read(&root().join("Cargo.toml"));
+    let (_, unix) = text.split_once("[target.'cfg(unix)'.dependencies]").expect("a section");
+    assert!(unix.trim_start().starts_with("rustix"), "what only Unix has is asked for only there");
+}
+
+#[test]
+fn the_map_of_the_code_names_every_module_and_every_test() {
+    let map = read(&root().join("ARCHITECTURE.md"));
+    let lib = read(&root().join("src/lib.rs"));
+    let modules: Vec<&str> =
+        lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
+    assert!(modules.len() > 20, "{modules:?}");
+    for module in modules {
+        assert!(map.contains(&format!("`{module}`")), "ARCHITECTURE.md lacks the module {module}");
+    }
+    let entries = fs::read_dir(root().join("tests")).expect("the tests");
+    for entry in entries.map(|entry| entry.expect("an entry").path()) {
+        let is_test =
+            entry.join("main.rs").exists() || entry.extension().is_some_and(|e| e == "rs");
+        let name = name(&entry);
+        let path = if entry.is_dir() { format!("{name}/main.rs") } else { name };
+        assert!(!is_test || map.contains(&format!("`{path}`")), "ARCHITECTURE.md lacks {path}");
+    }
+    // And nothing that is gone.
+    for word in map.split('`').skip(1).step_by(2).filter(|word| word.starts_with("tests/")) {
+        assert!(root().join(word).exists(), "ARCHITECTURE.md names {word}");
     }
 }
 

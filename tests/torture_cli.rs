@@ -2,16 +2,15 @@
 
 #![cfg(all(feature = "cli", unix))]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{assert_exit, err, json, program, run, said};
 use std::fs;
 use std::process::{Command, Output, Stdio};
 
 fn torture(arguments: &[&str]) -> Output {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_trigrade"));
-    program.arg("torture").args(arguments).output().expect("the program runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    run(&[&["torture"], arguments].concat())
 }
 
 const SMALL: [&str; 5] = ["--cases", "40", "--max-size", "8", "--plain"];
@@ -20,9 +19,8 @@ const SMALL: [&str; 5] = ["--cases", "40", "--max-size", "8", "--plain"];
 #[test]
 fn this_program_passes_and_that_is_exit_code_0() {
     let output = torture(&SMALL);
-    let said = text(&output.stdout) + &text(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.contains("self: 0 failures in 40 cases"), "{said}");
+    assert_exit(&output, 0);
+    assert!(said(&output).contains("self: 0 failures in 40 cases"), "{}", said(&output));
 }
 
 // spec: R12 R9
@@ -34,8 +32,8 @@ fn failures_are_exit_code_1_with_reports_and_reproducers() {
     let extra = ["--mesher", "test -s {in} && exit 1", "--shrink", "1", "--trials", "5", "--json"];
     let arguments = [&SMALL[..], &extra, &["--out", &out_text]].concat();
     let output = torture(&arguments);
-    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_exit(&output, 1);
+    let json = json(&output);
     assert_eq!(json["schema"], "trigrade-torture/1");
     assert_eq!(json["cases"], 40);
     assert!(json["verdicts"]["refused-valid"].as_u64() > Some(10), "{json}");
@@ -47,8 +45,8 @@ fn failures_are_exit_code_1_with_reports_and_reproducers() {
         assert!(out.join(below).join(name).is_file(), "{name}");
     }
     let replayed = torture(&["--replay", &out_text]);
-    let said = text(&replayed.stdout) + &text(&replayed.stderr);
-    assert_eq!(replayed.status.code(), Some(0), "this program meshes what another refused: {said}");
+    // This program meshes what another refused.
+    assert_exit(&replayed, 0);
 }
 
 // spec: R12
@@ -66,9 +64,8 @@ fn what_cannot_run_is_exit_code_2_and_says_what_would_help() {
     ];
     for (arguments, expected) in cases {
         let output = torture(arguments);
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(expected), "{arguments:?}: {said}");
+        assert_exit(&output, 2);
+        assert!(err(&output).contains(expected), "{arguments:?}: {}", err(&output));
     }
 }
 
@@ -77,8 +74,7 @@ fn what_cannot_run_is_exit_code_2_and_says_what_would_help() {
 fn a_hang_and_a_crash_are_told_apart_and_end_nothing() {
     let small = ["--cases", "3", "--max-size", "5", "--shrink", "0", "--family", "stars", "--json"];
     let class = |extra: &[&str]| {
-        let output = torture(&[&small[..], extra].concat());
-        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let json = json(&torture(&[&small[..], extra].concat()));
         json["verdicts"].as_object().expect("counts").keys().cloned().collect::<Vec<_>>()
     };
     assert_eq!(class(&["--mesher", "sleep 60; : {in}", "--timeout", "0.2"]), ["hang"]);
@@ -88,8 +84,8 @@ fn a_hang_and_a_crash_are_told_apart_and_end_nothing() {
 #[test]
 fn the_list_names_families_and_presets() {
     let output = torture(&["--list"]);
-    let said = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0));
+    assert_exit(&output, 0);
+    let said = said(&output);
     for name in ["near-collinear", "crossing-by-little", "invalid (D8)", "netgen", "mmg2d"] {
         assert!(said.contains(name), "{name}: {said}");
     }
@@ -119,7 +115,7 @@ fn an_interrupt_ends_the_meshers_too() {
     let [begun, survived] = ["begun", "survived"].map(|name| folder.path().join(name));
     let (note, trace) = (begun.display(), survived.display());
     let mesher = format!("touch '{note}'; (sleep 4; touch '{trace}') & sleep 300; : {{in}}");
-    let mut torture = Command::new(env!("CARGO_BIN_EXE_trigrade"))
+    let mut torture = program()
         .args(["torture", "--mesher", &mesher, "--form", "json"])
         .args(["--cases", "1", "--timeout", "300"])
         .stdout(Stdio::null())

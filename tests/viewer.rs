@@ -151,6 +151,45 @@ fn findings_layers_and_playback_are_offered() {
     assert!(dom.contains("data-centre=\"2.00000 1.50000 0.00000\""), "{dom}");
 }
 
+/// A value in the attributes of the document's body.
+fn attribute(dom: &str, name: &str) -> Option<usize> {
+    let (_, rest) = dom.split_once(&format!("data-{name}=\""))?;
+    rest.split_once('"')?.0.parse().ok()
+}
+
+/// A wave over a square, `n` cells a side.
+fn wave(n: u32) -> MeshData {
+    let at = |i: u32| f64::from(i) / f64::from(n);
+    let place = |j, i| [at(i), at(j), 0.1 * libm::sin(9.0 * at(i)) * libm::sin(7.0 * at(j))];
+    let cell = |j: u32, i: u32| {
+        let corner = |j, i| j * (n + 1) + i;
+        let [a, b, c, d] = [corner(j, i), corner(j, i + 1), corner(j + 1, i + 1), corner(j + 1, i)];
+        [[a, b, c], [a, c, d]]
+    };
+    MeshData {
+        points: (0..=n).flat_map(|j| (0..=n).map(move |i| place(j, i))).collect(),
+        triangles: (0..n).flat_map(|j| (0..n).flat_map(move |i| cell(j, i))).collect(),
+        ..MeshData::default()
+    }
+}
+
+// spec: G23
+#[test]
+fn a_large_mesh_in_space_turns_as_a_coarser_one() {
+    let mesh = wave(200);
+    let viewer = Viewer::new("wave", &mesh);
+    for renderer in ["canvas", "webgl2"] {
+        let address = format!("renderer={renderer}&detail=coarse&move=3&hide=wire");
+        let Some(dom) = shown(&viewer, &address) else { return };
+        let [moved, drawn] = ["moved", "drawn"].map(|name| attribute(&dom, name));
+        assert!(moved.is_some_and(|n| (1_000..40_000).contains(&n)), "{renderer}: {moved:?}");
+        assert_eq!(drawn, Some(80_000), "{renderer}: all of it once it rests");
+    }
+    let small = wave(20);
+    let dom = shown(&Viewer::new("wave", &small), "detail=coarse&move=3").expect("a browser");
+    assert_eq!(attribute(&dom, "moved"), Some(800), "what is small is drawn as it is");
+}
+
 // spec: G12
 #[test]
 fn extreme_coordinates_and_space_are_shown() {

@@ -52,6 +52,26 @@ pub struct CertifiedModel {
 }
 
 /// What a check said of certain bytes.
+///
+/// ```
+/// use trigrade::check::certificate::{Certificate, FileHash};
+/// use trigrade::check::{CheckOptions, check};
+/// use trigrade::format::{MeshForm, read_mesh};
+///
+/// let file = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let mesh = read_mesh(file, MeshForm::Off, &Default::default())?;
+/// let options = CheckOptions::new();
+/// let certify = |bytes: &[u8]| {
+///     let report = check(&mesh, None, &options);
+///     Certificate::new(&report, &options, FileHash::of("a.off", &[bytes]), None)
+/// };
+/// let text = serde_json::to_string(&certify(file))?;
+/// // Whoever has the file confirms it, and notices any other one.
+/// let certificate = Certificate::parse(&text)?;
+/// assert!(certificate.confirmed_by(&certify(file)).is_ok());
+/// assert!(certificate.confirmed_by(&certify(b"OFF\n")).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Certificate {

@@ -9,6 +9,7 @@ pub use plot::{Colour, PlotArguments};
 pub use remesh::RemeshArguments;
 pub use study::{CompareArguments, StudyArguments, StudySize};
 
+use super::words::did_you_mean;
 use crate::check::report::Form;
 use crate::check::{CheckOptions, Gate, Id, Metric};
 use crate::delaunay::Engine;
@@ -83,7 +84,7 @@ pub enum Verb {
     Explain(ExplainArguments),
     /// Convert a mesh between formats, bit for bit where the formats allow it.
     Convert(ConvertArguments),
-    /// Draw a mesh as SVG or PNG, or as an HTML viewer.
+    /// Draw a mesh as SVG or PNG, or as an HTML viewer; with --domain, what `check` finds is marked.
     Plot(PlotArguments),
     /// Torture any mesher with adversarial boundaries, and shrink what it gets wrong.
     Torture(Box<TortureArguments>),
@@ -164,6 +165,28 @@ pub struct DomainReading {
     /// Far-field circle around an airfoil: its radius in chords and its number of points.
     #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield)]
     pub farfield: Option<Farfield>,
+}
+
+/// The domain that a mesh is set against.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Against {
+    /// The domain that the mesh must cover, its boundary preserved.
+    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
+    pub domain: Option<PathBuf>,
+    /// Form of the domain, whatever its extension.
+    #[arg(long, value_name = "FORM", requires = "domain")]
+    pub domain_from: Option<String>,
+    /// Far-field circle, as it was given to `mesh`.
+    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
+    pub farfield: Option<Farfield>,
+}
+
+impl Against {
+    /// How the domain is read.
+    #[must_use]
+    pub fn reading(&self) -> DomainReading {
+        DomainReading { from: self.domain_from.clone(), farfield: self.farfield }
+    }
 }
 
 /// What the mesher is asked to do.
@@ -534,15 +557,9 @@ pub struct CheckArguments {
     /// How the mesh is read.
     #[command(flatten)]
     pub reading: MeshReading,
-    /// The domain that the mesh must cover, its boundary preserved.
-    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
-    pub domain: Option<PathBuf>,
-    /// Form of the domain, whatever its extension.
-    #[arg(long, value_name = "FORM", requires = "domain")]
-    pub domain_from: Option<String>,
-    /// Far-field circle, as it was given to `mesh`.
-    #[arg(long, value_name = "RADIUS,POINTS", value_parser = parse_farfield, requires = "domain")]
-    pub farfield: Option<Farfield>,
+    /// What it must cover.
+    #[command(flatten)]
+    pub against: Against,
     /// The surface model that the mesh must be a mesh of.
     #[arg(long, value_name = "MODEL", value_hint = ValueHint::FilePath, conflicts_with = "domain")]
     pub surface: Option<PathBuf>,
@@ -589,7 +606,7 @@ pub struct Demands {
     #[arg(long, value_name = "FACTOR", value_parser = parse_clamp)]
     pub max_area_ratio: Option<f64>,
     /// Any metric: `radius_ratio <= 3 @ 99%`; repeatable.
-    #[arg(long, value_name = "GATE", value_parser = Gate::parse)]
+    #[arg(long, value_name = "GATE", value_parser = parse_gate)]
     pub gate: Vec<Gate>,
     /// Every interior edge must be locally Delaunay.
     #[arg(long)]
@@ -773,11 +790,32 @@ pub struct ReportTarget {
 fn parse_report(text: &str) -> Result<ReportTarget, String> {
     let (kind, path) =
         text.split_once('=').ok_or("write it as KIND=FILE, e.g. json=report.json")?;
-    let form = kind.parse::<Form>().map_err(|error| error.to_string())?;
+    let form = kind.parse::<Form>().map_err(|error| {
+        let near = did_you_mean(kind, Form::ALL.map(Form::name));
+        format!("{error}{near}")
+    })?;
     if path.is_empty() {
         return Err("the file name is missing after `=`".into());
     }
     Ok(ReportTarget { form, path: path.into() })
+}
+
+/// A gate; where its metric is misspelt, with the one that is meant.
+fn parse_gate(text: &str) -> Result<Gate, String> {
+    Gate::parse(text).map_err(|error| {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+        let metric = text.trim().split(|c| !is_word(c)).next().unwrap_or_default();
+        format!("{error}{}", metric_meant(metric))
+    })
+}
+
+/// `; did you mean ...?` where the word is no metric but nearly one.
+fn metric_meant(word: &str) -> String {
+    let known: Vec<String> = Metric::all().map(|metric| metric.to_string()).collect();
+    match word.parse::<Metric>() {
+        Ok(_) => String::new(),
+        Err(_) => did_you_mean(word, known.iter().map(String::as_str)),
+    }
 }
 
 fn parse_finite(text: &str) -> Result<f64, String> {
@@ -841,10 +879,10 @@ fn parse_gradation(text: &str) -> Result<mesher::Gradation, String> {
         "mean" => mesher::Gradation::Mean,
         "third" => mesher::Gradation::Third,
         "uniform" => mesher::Gradation::Uniform,
-        _ => {
-            let expression = Expression::parse(text).map_err(|error| error.to_string())?;
-            mesher::Gradation::Expression(expression)
-        }
+        _ => mesher::Gradation::Expression(Expression::parse(text).map_err(|error| {
+            let near = did_you_mean(text.trim(), ["growth", "mean", "third", "uniform"]);
+            format!("{error}{near}")
+        })?),
     })
 }
 

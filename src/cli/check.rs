@@ -1,12 +1,11 @@
 //! `trigrade check`: the verdict on anybody's mesh.
 
-use super::arguments::{CheckArguments, DomainReading};
+use super::arguments::CheckArguments;
 use super::console::Console;
-use super::domain_file::load_domain;
+use super::domain_file::load_against;
 use super::failure::{Diagnostic, EXIT_FINDINGS, Failure};
 use super::forms::{OutputFile, output_files};
 use super::input::{Input, load};
-use super::mesh::count;
 use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::{Checked, Outcome};
 use super::output::{Cleanup, Outputs};
@@ -14,6 +13,7 @@ use super::size_file::load_node_data;
 use super::surface;
 use super::verdict;
 use super::watch::{Watch, stages};
+use super::words::count;
 use crate::check::certificate::{Certificate, FileHash};
 use crate::check::size::{SizeFit, size_fit};
 use crate::check::surface::{SurfaceLimits, check_on_model};
@@ -172,10 +172,7 @@ impl Files {
         let certifies = arguments.certificate.is_some() || arguments.verify_certificate.is_some();
         let hash = certifies.then(|| loaded.hash());
         loaded.forget_files();
-        let reading =
-            DomainReading { from: arguments.domain_from.clone(), farfield: arguments.farfield };
-        let domain = arguments.domain.as_ref().map(|path| load_domain(path, &reading));
-        Ok(Self { loaded, domain: domain.transpose()?, hash })
+        Ok(Self { loaded, domain: load_against(&arguments.against)?, hash })
     }
 
     fn domain(&self) -> Option<&Domain> {

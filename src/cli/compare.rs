@@ -1,14 +1,14 @@
 //! `trigrade compare`: two meshes, every metric of both, and both in one picture.
 
 use super::arguments::CompareArguments;
-use super::domain_file::load_domain;
+use super::domain_file::load_against;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputForm, output_files};
-use super::mesh::count;
 use super::mesh_file::{LoadedMesh, load_mesh};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
 use super::verdict;
+use super::words::count;
 use crate::check::quality::Better;
 use crate::check::{Metric, MetricSummary, Report};
 use crate::draw::{self, DrawError, Layer, Panel};
@@ -33,17 +33,14 @@ pub fn run(arguments: &CompareArguments, cleanup: &Cleanup) -> Result<Outcome, F
         let diagnostic = Diagnostic::new("a comparison is .svg, .png or .html");
         return Err(Failure::cannot_run(diagnostic.at(file.path.display())));
     }
-    let domain = match &arguments.domain {
-        Some(path) => Some(load_domain(path, &arguments.domain_reading())?.1),
-        None => None,
-    };
+    let domain = load_against(&arguments.against)?.map(|(_, domain)| domain);
     let side = |path| {
         let LoadedMesh { name, mesh, .. } = load_mesh(path, &arguments.reading)?;
         let report = verdict::check_mesh(&mesh, domain.as_ref());
         Ok(Side { name, mesh, report })
     };
     let sides = [side(&arguments.a)?, side(&arguments.b)?];
-    let mut outputs = Outputs::prepare(&super::mesh::paths(&files), cleanup)?;
+    let mut outputs = Outputs::prepare(&super::judged::paths(&files), cleanup)?;
     let table = table(&sides);
     for (i, file) in files.iter().enumerate() {
         let bytes = draw(&sides, &table, arguments, file.form).map_err(|e| {

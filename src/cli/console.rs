@@ -2,9 +2,13 @@
 
 use super::arguments::Global;
 use super::failure::Failure;
+use super::words::count;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
+
+/// At most this many complaints are printed; reports have all of them.
+const COMPLAINTS_PRINTED: usize = 40;
 
 /// Where text for people goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,9 +67,14 @@ impl Console {
     pub fn complain(&self, failure: &Failure) {
         let mut out = io::stderr().lock();
         let colour = out.is_terminal() && std::env::var_os("NO_COLOR").is_none();
-        for diagnostic in &failure.diagnostics {
+        for diagnostic in failure.diagnostics.iter().take(COMPLAINTS_PRINTED) {
             let text = diagnostic.to_string();
             print(&mut out, &if colour { coloured(&text) } else { text });
+        }
+        let rest = failure.diagnostics.len().saturating_sub(COMPLAINTS_PRINTED);
+        if rest > 0 {
+            let rest = count(rest as u64);
+            print(&mut out, &format!("... and {rest} more: `--report json=FILE` has all of them"));
         }
     }
 

@@ -1,29 +1,23 @@
-//! `trigrade convert` and `trigrade plot`: a mesh in, files out, nothing changed.
+//! `trigrade convert`: a mesh in, files out, nothing changed.
 
-use super::arguments::{ConvertArguments, PlotArguments};
+use super::arguments::ConvertArguments;
 use super::console::Console;
-use super::domain_file::load_domain;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, output_files};
-use super::mesh::count;
+use super::judged::paths;
 use super::mesh_file::{Drawing, LoadedMesh, load_mesh, write};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
-use super::size_layers::{NodalSpacing, nodal_spacing};
-use super::verdict::check_mesh;
-use crate::domain::validate::validate;
-use crate::draw::{self, Highlight};
+use super::words::count;
 use crate::format::MeshView;
 use crate::mesh::MeshData;
-use crate::mesher::Options;
 use serde_json::json;
-use std::path::PathBuf;
 
-/// Runs `trigrade convert`.
+/// Runs the verb.
 ///
 /// # Errors
 /// Exit code 2: files, forms, or a mesh that cannot be carried over without loss.
-pub fn convert(
+pub fn run(
     arguments: &ConvertArguments,
     console: &Console,
     cleanup: &Cleanup,
@@ -39,59 +33,17 @@ pub fn convert(
     Ok(outcome(&name, &mesh, &files))
 }
 
-/// Runs `trigrade plot`.
+/// Writes the mesh and its pictures, all or none.
 ///
 /// # Errors
-/// Exit code 2: files, forms that are no pictures, an empty window.
-pub fn plot(arguments: &PlotArguments, cleanup: &Cleanup) -> Result<Outcome, Failure> {
-    let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
-    if let Some(file) = files.iter().find(|file| !file.form.is_picture()) {
-        let diagnostic =
-            Diagnostic::new("a picture is .svg, .png or .html").at(file.path.display());
-        return Err(Failure::cannot_run(diagnostic.help("`trigrade convert` writes meshes")));
-    }
-    let LoadedMesh { name, path, mesh, .. } = load_mesh(&arguments.mesh, &arguments.reading)?;
-    let file_name = || {
-        let last = path.as_deref().and_then(std::path::Path::file_name);
-        last.map_or_else(|| name.clone(), |last| last.to_string_lossy().into_owned())
-    };
-    let title = arguments.title.clone().unwrap_or_else(file_name);
-    let (highlights, background) = match &arguments.domain {
-        Some(path) => against(&mesh, path, arguments)?,
-        None => (Vec::new(), None),
-    };
-    let drawing = Drawing {
-        view: arguments.window,
-        width: f64::from(arguments.width),
-        colour: arguments.colour.0,
-        highlights,
-        background,
-        ..Drawing::of(&mesh, title)
-    };
-    write_files(&files, &mesh, &drawing, cleanup)?;
-    Ok(outcome(&name, &mesh, &files))
-}
-
-/// The findings of a mesh against its domain, and the domain's background mesh.
-fn against(
-    mesh: &MeshData,
-    path: &std::path::Path,
-    arguments: &PlotArguments,
-) -> Result<(Vec<Highlight>, Option<NodalSpacing>), Failure> {
-    let (_, domain) = load_domain(path, &arguments.domain_reading())?;
-    let report = check_mesh(mesh, Some(&domain));
-    let background = validate(&domain).ok().and_then(|plc| nodal_spacing(plc, &Options::default()));
-    Ok((draw::highlights(&report), background))
-}
-
-fn write_files(
+/// Exit code 2: a form that cannot carry the mesh, or the disk.
+pub fn write_files(
     files: &[OutputFile],
     mesh: &MeshData,
     drawing: &Drawing<'_>,
     cleanup: &Cleanup,
 ) -> Result<(), Failure> {
-    let paths: Vec<PathBuf> = files.iter().map(|file| file.path.clone()).collect();
-    let mut outputs = Outputs::prepare(&paths, cleanup)?;
+    let mut outputs = Outputs::prepare(&paths(files), cleanup)?;
     for (i, file) in files.iter().enumerate() {
         write(&mut outputs, i, file, MeshView::from(mesh), drawing)?;
     }
@@ -111,7 +63,9 @@ fn refuse_bad_references(name: &str, mesh: &MeshData) -> Result<(), Failure> {
     Err(Failure::cannot_run(Diagnostic::new(message).at(name).help(help)))
 }
 
-fn outcome(name: &str, mesh: &MeshData, files: &[OutputFile]) -> Outcome {
+/// What is told of files written from a mesh, and what they have no place for.
+#[must_use]
+pub fn outcome(name: &str, mesh: &MeshData, files: &[OutputFile]) -> Outcome {
     let paths: Vec<String> = files.iter().map(|file| file.path.display().to_string()).collect();
     let triangles = mesh.triangles.len();
     let dropped = files.iter().filter_map(|file| match (file.form, file.companion) {

@@ -6,17 +6,18 @@ use super::console::Console;
 use super::domain_file;
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, output_files_or_json};
-use super::mesh::count;
-use super::mesh_file::{self, Drawing, parse, unreadable, written_meshes};
-use super::outcome::{Checked, Outcome, file_names, output_names};
+use super::judged::{self, Judged, judge, paths, read_back};
+use super::mesh_file::{self, Drawing};
+use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::point_file::{Points, repetitions};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, seconds, stages, time, total};
-use crate::check::{CheckOptions, Report, check};
+use super::watch::{Watch, seconds};
+use super::words::count;
+use crate::check::{CheckOptions, check};
 use crate::delaunay::{CdtError, Engine};
 use crate::domain::Domain;
-use crate::format::{MeshForm, MeshView, WriteOptions, write_mesh};
+use crate::format::MeshView;
 use crate::mesh::MeshData;
 use crate::point::Point2;
 use crate::triangulate::{
@@ -37,7 +38,7 @@ pub fn run(
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
     let files = output_files_or_json(&arguments.outputs, arguments.form.as_deref())?;
-    let mut targets: Vec<PathBuf> = files.iter().map(|file| file.path.clone()).collect();
+    let mut targets = paths(&files);
     targets.extend(arguments.map.clone());
     // Staged before the long work: a target that cannot be written is known now.
     let mut outputs = Outputs::prepare(&targets, cleanup)?;
@@ -52,19 +53,19 @@ pub fn run(
     if arguments.map.is_some() {
         write_json(&mut outputs, files.len(), &map_json(&result))?;
     }
-    let mut report = None;
+    let mut judged = None;
     if arguments.check {
         watch.begin("check");
-        report = Some(check_written(&outputs, &files, &result, domain.is_some())?);
+        judged = Some(check_written(&outputs, &files, &result, domain.is_some())?);
     }
-    let passed = report.as_ref().is_none_or(|(_, report)| report.exit_code() == EXIT_HOLDS);
+    let passed = judged::exit(judged.as_ref()) == EXIT_HOLDS;
     if passed {
         outputs.commit()?;
     }
     let laps = watch.finish();
     let written = if passed { targets } else { Vec::new() };
     let engine = arguments.engine.engine();
-    let summary = Summary { points, result, report, written, engine, laps };
+    let summary = Summary { points, result, judged, written, engine, laps };
     Ok(summary.outcome(arguments.timings))
 }
 
@@ -163,45 +164,29 @@ fn map_json(result: &Triangulated) -> Value {
     })
 }
 
-/// Lets the checker judge a mesh read back from its bytes: the region is covered exactly once, every
+/// Lets the checker judge every mesh read back from its bytes: the region is covered exactly once, every
 /// point is a vertex, every segment a chain of edges, and no circle holds a vertex across an edge.
 fn check_written(
     outputs: &Outputs,
     files: &[OutputFile],
     result: &Triangulated,
     is_constrained: bool,
-) -> Result<(String, Report), Failure> {
-    let (name, mesh) = read_back(outputs, files, result)?;
+) -> Result<Judged, Failure> {
+    let meshes = read_back(outputs, files, MeshView::from(&result.mesh))?;
     let options = CheckOptions::default();
     let options = match is_constrained {
         true => options.constrained_delaunay(true),
         false => options.delaunay(true),
     };
-    Ok((name, check(&mesh, result.outline.as_ref(), &options)))
-}
-
-/// The first mesh written that can be read back; else one through MSH.
-fn read_back(
-    outputs: &Outputs,
-    files: &[OutputFile],
-    result: &Triangulated,
-) -> Result<(String, MeshData), Failure> {
-    if let Some(first) = written_meshes(outputs, files).next() {
-        return first;
-    }
-    let name = "a temporary MSH file".to_owned();
-    let mut bytes = Vec::new();
-    write_mesh(MeshView::from(&result.mesh), MeshForm::Msh, WriteOptions::default(), &mut bytes)
-        .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
-    let mesh = parse(&bytes, MeshForm::Msh, &[], false).map_err(|e| unreadable(&name, &e))?;
-    Ok((name, mesh))
+    let outline = result.outline.as_ref();
+    Ok(judge(&meshes, |name, mesh| Judged::new(name, check(mesh, outline, &options), ())))
 }
 
 /// What is told of a run.
 struct Summary {
     points: Points,
     result: Triangulated,
-    report: Option<(String, Report)>,
+    judged: Option<Judged>,
     written: Vec<PathBuf>,
     engine: Engine,
     laps: Vec<(String, Duration)>,
@@ -209,14 +194,11 @@ struct Summary {
 
 impl Summary {
     fn exit(&self) -> u8 {
-        self.report.as_ref().map_or(EXIT_HOLDS, |(_, report)| report.exit_code())
+        judged::exit(self.judged.as_ref())
     }
 
     fn outcome(self, timings: bool) -> Outcome {
-        let checked = self.report.as_ref().map(|(mesh, report)| {
-            let (mesh, domain) = (mesh.clone(), Some(self.points.input.name.clone()));
-            Box::new(Checked { report: report.clone(), mesh, domain })
-        });
+        let checked = self.judged.as_ref().map(|judged| judged.checked(&self.points.input.name));
         Outcome { exit: self.exit(), text: self.text(timings), json: self.json(), checked }
     }
 
@@ -241,22 +223,13 @@ impl Summary {
             line("crossings", format!("{} points", count(self.result.crossings as u64)));
         }
         line("meshed", self.meshed());
-        if let Some((name, report)) = &self.report {
+        if let Some(Judged { name, report, .. }) = &self.judged {
             if let Some(figures) = Figures::of(report) {
                 line("quality", figures.to_string());
             }
             line("check", verdict::sentence(report, name));
         }
-        if timings {
-            line("time", stages(&self.laps));
-        }
-        line("total", time(total(&self.laps)));
-        if self.exit() == EXIT_HOLDS {
-            line("written", output_names(&self.written));
-        } else {
-            line("written", "nothing: the mesh did not pass its check".into());
-            lines.extend(self.report.iter().map(|(name, r)| verdict::findings(r, name)));
-        }
+        lines.extend(judged::closing(self.judged.as_ref(), &self.laps, timings, &self.written));
         lines.join("\n")
     }
 
@@ -278,14 +251,9 @@ impl Summary {
     }
 
     fn json(&self) -> Value {
-        let verdict = match &self.report {
-            Some((_, report)) if report.passed() => "passed",
-            Some(_) => "failed",
-            None => "not-checked",
-        };
         json!({
             "schema": "trigrade-delaunay/1",
-            "verdict": verdict,
+            "verdict": judged::word(self.judged.as_ref()),
             "input": self.points.input.name,
             "given": self.points.points().len(),
             "left_out": self.points.left_out(),
@@ -297,7 +265,7 @@ impl Summary {
             "triangles": self.result.mesh.triangles.len(),
             "written": file_names(&self.written),
             "seconds": seconds(&self.laps),
-            "check": self.report.as_ref().map(|(_, report)| report),
+            "check": self.judged.as_ref().map(|judged| &judged.report),
         })
     }
 }

@@ -1,16 +1,14 @@
 //! Domain files: reading with the `.node` file beside a `.poly`, and telling faults.
 
-use super::arguments::DomainReading;
+use super::arguments::{Against, DomainReading};
 use super::failure::{Diagnostic, EXIT_CANNOT_RUN, Failure};
 use super::input::{Input, is_dash, load};
+use super::words::did_you_mean;
 use crate::domain::validate::Fault;
 use crate::domain::{Domain, Place};
 use crate::format::airfoil::FarField;
 use crate::format::domain_file::{DomainForm, DomainReadError, Problem, ReadOptions, read_domain};
 use std::path::Path;
-
-/// At most this many faults are printed; the JSON report has all of them.
-pub const FAULTS_PRINTED: usize = 40;
 
 /// The names of the forms, for messages.
 const FORMS: &str = "poly, json, geojson, dat";
@@ -35,6 +33,15 @@ pub fn load_domain(path: &Path, reading: &DomainReading) -> Result<(Input, Domai
     Ok((input, domain))
 }
 
+/// Reads the domain that a mesh is set against, if there is one.
+///
+/// # Errors
+/// As [`load_domain`].
+pub fn load_against(against: &Against) -> Result<Option<(Input, Domain)>, Failure> {
+    let reading = against.reading();
+    against.domain.as_ref().map(|path| load_domain(path, &reading)).transpose()
+}
+
 fn node_beside(poly: &Path) -> Option<Vec<u8>> {
     load(&poly.with_extension("node")).ok().map(|input| input.bytes)
 }
@@ -43,7 +50,8 @@ fn node_beside(poly: &Path) -> Option<Vec<u8>> {
 fn form_of(path: &Path, said: Option<&str>) -> Result<DomainForm, Failure> {
     if let Some(name) = said {
         return DomainForm::from_extension(name).ok_or_else(|| {
-            let message = format!("there is no form of domain `{name}`");
+            let near = did_you_mean(name, FORMS.split(", "));
+            let message = format!("there is no form of domain `{name}`{near}");
             Failure::cannot_run(Diagnostic::new(message).help(format!("there are {FORMS}")))
         });
     }

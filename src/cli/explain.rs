@@ -2,7 +2,7 @@
 
 use super::console::Console;
 use super::failure::{Diagnostic, Failure};
-use super::input::nearest;
+use super::words::nearest;
 
 /// The specification the program was built from.
 const SPEC: &str = include_str!("../../SPEC.md");

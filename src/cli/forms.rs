@@ -2,6 +2,7 @@
 
 use super::failure::{Diagnostic, Failure};
 use super::input::is_dash;
+use super::words::did_you_mean;
 use crate::format::{Companion, Encoding, MeshForm, MshVersion, WriteOptions};
 use std::path::{Path, PathBuf};
 
@@ -99,8 +100,14 @@ pub fn is_read(form: MeshForm) -> bool {
 
 fn unknown(name: &str, known: &str) -> Failure {
     Failure::cannot_run(
-        Diagnostic::new(format!("there is no form `{name}`")).help(format!("there are {known}")),
+        Diagnostic::new(format!("there is no form `{name}`{}", did_you_mean(name, words(known))))
+            .help(format!("there are {known}")),
     )
+}
+
+/// The names in a list for messages.
+fn words(list: &str) -> impl Iterator<Item = &str> {
+    list.split([',', ';', ' ']).filter(|word| !word.is_empty())
 }
 
 /// One file of an output.
@@ -190,9 +197,12 @@ fn output_form(path: &Path, said: Option<&str>) -> Result<OutputForm, Failure> {
     }
     let by_extension = || OutputForm::named(path.extension()?.to_str()?);
     by_extension().ok_or_else(|| {
-        let mut diagnostic = Diagnostic::new("the extension names no form that is written")
-            .at(path.display())
-            .help(format!("there are {}; or add --form", known()));
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let near = did_you_mean(&extension, words(&known()));
+        let mut diagnostic =
+            Diagnostic::new(format!("the extension names no form that is written{near}"))
+                .at(path.display())
+                .help(format!("there are {}; or add --form", known()));
         if path.extension().is_some_and(|extension| extension == "json") {
             diagnostic = diagnostic.help("a report is written with --report json=FILE");
         }

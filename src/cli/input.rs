@@ -1,6 +1,7 @@
 //! Reading inputs: one function for a path or `-`, with limits and clear errors.
 
 use super::failure::{Diagnostic, Failure};
+use super::words::nearest;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -110,32 +111,6 @@ fn nearest_file(path: &Path) -> Option<PathBuf> {
     Some(path.with_file_name(near))
 }
 
-/// The candidate at the smallest edit distance, if that is at most a third of the word (and not
-/// the word itself); the first in alphabetical order among equals.
-#[must_use]
-pub fn nearest<'a>(wanted: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    candidates
-        .map(|name| (edit_distance(wanted, name), name))
-        .filter(|&(distance, _)| distance > 0 && distance <= wanted.chars().count().div_ceil(3))
-        .min()
-        .map(|(_, name)| name)
-}
-
-/// Levenshtein distance, ignoring case.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.to_lowercase().chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.to_lowercase().chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, &cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,20 +151,5 @@ mod tests {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
         std::fs::write(file.path(), b"4 2 0 0\n").expect("written");
         assert_eq!(load(file.path()).expect("readable").bytes, b"4 2 0 0\n");
-    }
-
-    #[test]
-    fn edit_distances() {
-        for (a, b, distance) in
-            [("", "", 0), ("abc", "", 3), ("kitten", "sitting", 3), ("Off", "oFF", 0)]
-        {
-            assert_eq!(edit_distance(a, b), distance, "{a} {b}");
-        }
-    }
-
-    #[test]
-    fn far_words_are_not_suggested() {
-        assert_eq!(nearest("wing.poly", ["plate.json", "lake.poly"].into_iter()), None);
-        assert_eq!(nearest("M33", ["M3", "M13", "D1"].into_iter()), Some("M13"));
     }
 }

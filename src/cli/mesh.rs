@@ -6,23 +6,22 @@ use super::console::Console;
 use super::domain_file::{invalid, load_domain};
 use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, OutputForm, output_files};
-use super::input::Input;
-use super::mesh_file::{self, Drawing, parse, unreadable, written_meshes};
-use super::outcome::{Checked, Outcome, file_names, output_names};
+use super::judged::{self, Judged, certify, judge, paths, read_back};
+use super::mesh_file::{self, Drawing};
+use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::refinement::Refinement;
 use super::size_file::load_size_field;
 use super::size_layers::{NodalSpacing, nodal_spacing, spacing_layers};
 use super::surface;
 use super::verdict::{self, Figures};
-use super::watch::{Watch, seconds, stages, time, total};
-use crate::check::certificate::{Certificate, FileHash};
-use crate::check::{CheckOptions, Report};
+use super::watch::{Watch, prediction, seconds};
+use super::words::count;
 use crate::domain::Domain;
-use crate::domain::validate::{Plc, validate};
-use crate::format::{MeshForm, MeshView, WriteOptions, write_mesh};
+use crate::domain::validate::validate;
+use crate::format::MeshView;
 use crate::mesh::MeshData;
-use crate::mesher::{Count, Fit, MeshError, Meshed, Observer, Options, mesh_plc};
+use crate::mesher::{Count, Fit, MeshError, Meshed, Options, mesh_plc};
 use crate::size::Prediction;
 use crate::structured::GridStats;
 use serde_json::{Value, json};
@@ -66,7 +65,8 @@ pub fn run(
     let plc = validate(&domain).map_err(|faults| invalid(&input.name, &faults))?;
     let mut summary = Summary::of(&input.name, &domain, arguments.reading.farfield);
     if arguments.dry_run {
-        summary.prediction = Some(predict(plc, &options)?);
+        let predicted = prediction(|observer| mesh_plc(plc, &options, observer));
+        summary.prediction = Some(predicted.map_err(|e| no_mesh(&e))?);
         return Ok(summary.outcome(watch.finish(), arguments.timings));
     }
     let has_viewer = files.iter().any(|file| file.form == OutputForm::Html);
@@ -83,12 +83,14 @@ pub fn run(
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
         watch.begin("check");
-        summary.check = Some(check_all(&meshes, &domain)?);
+        let by_check =
+            |name: &str, mesh: &_| Judged::new(name, verdict::check_mesh(mesh, Some(&domain)), ());
+        let judged = judge(&meshes, by_check);
         if arguments.certificate.is_some() {
-            let checked = summary.check.as_ref().map(|(name, report)| (name, report));
-            let certificate = certify(&outputs, &files, checked, Some(&input))?;
+            let certificate = certify(&outputs, &files, &judged, Some(&input))?;
             write_json(&mut outputs, files.len(), &certificate)?;
         }
+        summary.judged = Some(judged);
     }
     if summary.exit() == EXIT_HOLDS {
         outputs.commit()?;
@@ -96,33 +98,6 @@ pub fn run(
     }
     let laps = watch.finish();
     Ok(summary.outcome(laps, arguments.timings))
-}
-
-pub(super) fn paths(files: &[OutputFile]) -> Vec<PathBuf> {
-    files.iter().map(|file| file.path.clone()).collect()
-}
-
-/// Stops the mesher as soon as it has predicted the number of triangles.
-#[derive(Default)]
-struct Predict {
-    prediction: Option<Prediction>,
-}
-
-impl Observer for Predict {
-    fn predicted(&mut self, prediction: Prediction) -> bool {
-        self.prediction = Some(prediction);
-        false
-    }
-}
-
-fn predict(plc: Plc, options: &Options) -> Result<Prediction, Failure> {
-    let mut observer = Predict::default();
-    let outcome = mesh_plc(plc, options, &mut observer);
-    match (observer.prediction, outcome) {
-        (Some(prediction), _) => Ok(prediction),
-        (None, Err(error)) => Err(no_mesh(&error)),
-        (None, Ok(_)) => unreachable!("the mesher predicts before it meshes"),
-    }
 }
 
 /// Why the mesher made no mesh, as exit code and complaint.
@@ -174,70 +149,6 @@ fn write_all(
     Ok(())
 }
 
-/// Every written mesh that can be read, read from its bytes; where none can, the mesh written to
-/// an OFF file and read from there.
-pub(super) fn read_back(
-    outputs: &Outputs,
-    files: &[OutputFile],
-    mesh: MeshView<'_>,
-) -> Result<Vec<(String, MeshData)>, Failure> {
-    let mut meshes = written_meshes(outputs, files).collect::<Result<Vec<_>, _>>()?;
-    if meshes.is_empty() {
-        meshes.push(("a temporary OFF file".into(), through_off(mesh)?));
-    }
-    Ok(meshes)
-}
-
-fn through_off(mesh: MeshView<'_>) -> Result<MeshData, Failure> {
-    let mut bytes = Vec::new();
-    let options = WriteOptions::default();
-    write_mesh(mesh, MeshForm::Off, options, &mut bytes)
-        .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
-    parse(&bytes, MeshForm::Off, &[], false).map_err(|e| unreadable("a temporary OFF file", &e))
-}
-
-/// Checks each mesh; the first report that is no pass, or the first.
-fn check_all(meshes: &[(String, MeshData)], domain: &Domain) -> Result<(String, Report), Failure> {
-    let mut first = None;
-    for (name, mesh) in meshes {
-        let report = verdict::check_mesh(mesh, Some(domain));
-        let passed = report.passed();
-        let named = (name.clone(), report);
-        if !passed {
-            return Ok(named);
-        }
-        first.get_or_insert(named);
-    }
-    Ok(first.expect("at least one mesh is read back"))
-}
-
-/// The certificate of the mesh that was read back and checked.
-pub(super) fn certify(
-    outputs: &Outputs,
-    files: &[OutputFile],
-    checked: Option<(&String, &Report)>,
-    domain: Option<&Input>,
-) -> Result<Certificate, Failure> {
-    let written = checked.and_then(|(name, report)| {
-        let is_checked = |file: &OutputFile| {
-            file.companion.is_none() && file.path.display().to_string() == *name
-        };
-        Some((files.iter().position(is_checked)?, name, report))
-    });
-    let (index, name, report) = written.ok_or_else(|| {
-        let message = "none of the outputs is a mesh that can be read back and certified";
-        Failure::cannot_run(Diagnostic::new(message))
-    })?;
-    // Companions stand before their main file, in the order in which readers take them.
-    let before = files[..index].iter().rev().take_while(|file| file.companion.is_some()).count();
-    let parts = [index].into_iter().chain(index - before..index).map(|i| outputs.read_back(i));
-    let parts: Vec<Vec<u8>> = parts.collect::<Result<_, _>>()?;
-    let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
-    let mesh = FileHash::of(name, &parts);
-    let domain = domain.map(|domain| FileHash::of(&domain.name, &[&domain.bytes]));
-    Ok(Certificate::new(report, &CheckOptions::default(), mesh, domain))
-}
-
 /// A mesh this near to its target has reached it.
 const TARGET_TOLERANCE: f64 = 0.05;
 
@@ -252,7 +163,7 @@ struct Summary {
     fit: Option<Fit>,
     grid: Option<GridStats>,
     target: Option<usize>,
-    check: Option<(String, Report)>,
+    judged: Option<Judged>,
     written: Vec<PathBuf>,
     far_field: Option<Farfield>,
 }
@@ -269,7 +180,7 @@ impl Summary {
             fit: None,
             grid: None,
             target: None,
-            check: None,
+            judged: None,
             written: Vec::new(),
             far_field,
         }
@@ -297,14 +208,11 @@ impl Summary {
     }
 
     fn exit(&self) -> u8 {
-        self.check.as_ref().map_or(EXIT_HOLDS, |(_, report)| report.exit_code())
+        judged::exit(self.judged.as_ref())
     }
 
     fn outcome(self, laps: Vec<(String, Duration)>, timings: bool) -> Outcome {
-        let checked = self.check.as_ref().map(|(mesh, report)| {
-            let (mesh, domain) = (mesh.clone(), Some(self.name.clone()));
-            Box::new(Checked { report: report.clone(), mesh, domain })
-        });
+        let checked = self.judged.as_ref().map(|judged| judged.checked(&self.name));
         let (text, json) = (self.text(&laps, timings), self.json(&laps));
         Outcome { exit: self.exit(), text, json, checked }
     }
@@ -340,8 +248,8 @@ impl Summary {
         if let Some(text) = self.missed_target() {
             line("target", text);
         }
-        match &self.check {
-            Some((name, report)) => {
+        match &self.judged {
+            Some(Judged { name, report, .. }) => {
                 if let Some(figures) = Figures::of(report) {
                     line("quality", figures.to_string());
                 }
@@ -350,17 +258,7 @@ impl Summary {
             None if self.mesh.is_some() => line("check", "left out (--no-check)".into()),
             None => {}
         }
-        if timings {
-            line("time", stages(laps));
-        }
-        line("total", time(total(laps)));
-        if !self.written.is_empty() {
-            line("written", output_names(&self.written));
-        }
-        if self.exit() != EXIT_HOLDS {
-            line("written", "nothing: the mesh did not pass its check".into());
-            lines.extend(self.check.iter().map(|(name, report)| verdict::findings(report, name)));
-        }
+        lines.extend(judged::closing(self.judged.as_ref(), laps, timings, &self.written));
         lines.join("\n")
     }
 
@@ -372,14 +270,10 @@ impl Summary {
     }
 
     fn json(&self, laps: &[(String, Duration)]) -> Value {
-        let verdict = match &self.check {
-            Some((_, report)) if report.passed() => "passed",
-            Some(_) => "failed",
-            None => "not-checked",
-        };
+        let report = self.judged.as_ref().map(|judged| &judged.report);
         json!({
             "schema": "trigrade-mesh/1",
-            "verdict": verdict,
+            "verdict": judged::word(self.judged.as_ref()),
             "domain": self.name,
             "predicted": self.prediction.map(|p| p.triangles),
             "points": self.mesh.map(|(points, _)| points),
@@ -398,10 +292,10 @@ impl Summary {
                 "sweeps": grid.relaxed.map(|done| done.sweeps),
                 "residual": grid.relaxed.map(|done| done.residual),
             })),
-            "quality": self.check.as_ref().and_then(|(_, r)| Figures::of(r)).map(|f| f.json()),
+            "quality": report.and_then(Figures::of).map(|f| f.json()),
             "written": file_names(&self.written),
             "seconds": seconds(laps),
-            "check": self.check.as_ref().map(|(_, report)| report),
+            "check": report,
         })
     }
 }
@@ -418,33 +312,10 @@ pub fn grid_in_words(grid: &GridStats) -> String {
     }
 }
 
-/// A count with thin groups of thousands: 4 346.
-#[must_use]
-pub fn count(n: u64) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) && digits.len() > 4 {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cli::failure::EXIT_FINDINGS;
-
-    #[test]
-    fn counts_are_grouped() {
-        for (n, text) in
-            [(0, "0"), (999, "999"), (4346, "4346"), (12345, "12,345"), (1234567, "1,234,567")]
-        {
-            assert_eq!(count(n), text);
-        }
-    }
 
     // spec: K1
     #[test]

@@ -90,7 +90,7 @@ pub fn repetitions(points: &Points, repeated: &[[u32; 2]]) -> Option<String> {
     };
     let listed: Vec<String> = repeated.iter().take(LISTED).map(pair).collect();
     let more = if repeated.len() > LISTED { ", ..." } else { "" };
-    let count = super::mesh::count(repeated.len() as u64);
+    let count = super::words::count(repeated.len() as u64);
     match repeated.len() {
         0 => None,
         1 => Some(format!("1 point, merged: {}", listed[0])),

@@ -1,6 +1,6 @@
 //! What `trigrade mesh --method delaunay` says about its bounds.
 
-use super::mesh::count;
+use super::words::count;
 use crate::mesher::Options;
 use crate::refine::RefineStats;
 use serde_json::{Value, json};

@@ -4,12 +4,13 @@ use super::arguments::RemeshArguments;
 use super::console::Console;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::forms::output_files;
-use super::mesh::{count, paths, read_back};
+use super::judged::{self, Judged, judge, paths, read_back};
 use super::mesh_file::{self, Drawing, LoadedMesh, load_mesh};
-use super::outcome::{Checked, Outcome, file_names, output_names};
+use super::outcome::{Checked, Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, seconds, stages, time, total};
+use super::watch::{Watch, seconds};
+use super::words::{boundary, count};
 use crate::check::{CheckOptions, Dimension, Id, Report, check};
 use crate::format::MeshView;
 use crate::mesh::MeshData;
@@ -52,21 +53,28 @@ pub fn run(
         name,
         triangles: mesh.triangles.len(),
         remeshed,
-        verdict: None,
+        judged: None,
         written: Vec::new(),
     };
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&summary.remeshed.mesh))?;
         watch.begin("check");
-        let is_closed = before.statistics.boundary_edges == 0;
-        summary.verdict = Some(judge(&meshes, &mesh, is_closed, &summary.remeshed));
+        let before = Before { mesh: &mesh, is_closed: before.statistics.boundary_edges == 0 };
+        let each = |name: &str, mesh: &_| judged(name, mesh, &before, &summary.remeshed);
+        summary.judged = Some(judge(&meshes, each));
     }
     if summary.exit() == EXIT_HOLDS {
         outputs.commit()?;
         summary.written = paths(&files);
     }
     Ok(summary.outcome(&watch.finish(), arguments.timings))
+}
+
+/// The surface as it was.
+struct Before<'a> {
+    mesh: &'a MeshData,
+    is_closed: bool,
 }
 
 /// Cells that are no triangles would leave holes.
@@ -111,49 +119,21 @@ fn no_mesh(name: &str, error: &RemeshError) -> Failure {
     }
 }
 
-/// The check of the new mesh, and what it does not keep of the old one.
-struct Verdict {
-    name: String,
-    report: Report,
-    euler: i64,
-    complaints: Vec<Diagnostic>,
-}
-
-impl Verdict {
-    fn passed(&self) -> bool {
-        self.report.passed() && self.complaints.is_empty()
+/// The check of a new mesh, its Euler number, and what it does not keep of the old one.
+fn judged(name: &str, mesh: &MeshData, input: &Before<'_>, remeshed: &Remeshed) -> Judged<i64> {
+    let (euler, wanted) = (euler_number(&mesh.triangles), euler_number(&input.mesh.triangles));
+    let mut judged = Judged::new(name, in_space(mesh, input.is_closed), euler);
+    let mut complain = |message: String, rule| {
+        judged.complaints.push(Diagnostic::new(message).rule(rule).at(name));
+    };
+    if euler != wanted {
+        complain(format!("the Euler number is {euler}, that of the input {wanted}"), "U7");
     }
-}
-
-/// Judges each mesh that was read back; the first that does not pass, or the first.
-fn judge(
-    meshes: &[(String, MeshData)],
-    input: &MeshData,
-    closed: bool,
-    remeshed: &Remeshed,
-) -> Verdict {
-    let wanted = euler_number(&input.triangles);
-    let mut first = None;
-    for (name, mesh) in meshes {
-        let mut complaints = Vec::new();
-        let euler = euler_number(&mesh.triangles);
-        if euler != wanted {
-            let message = format!("the Euler number is {euler}, that of the input {wanted}");
-            complaints.push(Diagnostic::new(message).rule("U7").at(name));
-        }
-        let away = remeshed.deviation.vertices;
-        if away > ON_SURFACE * remeshed.diagonal {
-            let message = format!("a vertex is {away:e} off the input");
-            complaints.push(Diagnostic::new(message).rule("U4").at(name));
-        }
-        let report = in_space(mesh, closed);
-        let verdict = Verdict { name: name.clone(), report, euler, complaints };
-        if !verdict.passed() {
-            return verdict;
-        }
-        first.get_or_insert(verdict);
+    let away = remeshed.deviation.vertices;
+    if away > ON_SURFACE * remeshed.diagonal {
+        complain(format!("a vertex is {away:e} off the input"), "U4");
     }
-    first.expect("at least one mesh is read back")
+    judged
 }
 
 /// What is told of a run.
@@ -161,21 +141,18 @@ struct Summary {
     name: String,
     triangles: usize,
     remeshed: Remeshed,
-    verdict: Option<Verdict>,
+    judged: Option<Judged<i64>>,
     written: Vec<PathBuf>,
 }
 
 impl Summary {
     fn exit(&self) -> u8 {
-        let passed = self.verdict.as_ref().is_none_or(Verdict::passed);
-        if passed { EXIT_HOLDS } else { EXIT_FINDINGS }
+        judged::exit(self.judged.as_ref())
     }
 
     fn outcome(self, laps: &[(String, Duration)], timings: bool) -> Outcome {
         let (exit, text, json) = (self.exit(), self.text(laps, timings), self.json(laps));
-        let checked = self.verdict.map(|Verdict { name, report, .. }| {
-            Box::new(Checked { report, mesh: name, domain: Some(self.name) })
-        });
+        let checked = self.judged.as_ref().map(|judged| judged.checked(&self.name));
         Outcome { exit, text, json, checked }
     }
 
@@ -194,43 +171,27 @@ impl Summary {
                 deviation.to_input, deviation.from_input
             ),
         );
-        match &self.verdict {
-            Some(verdict) => {
-                if let Some(figures) = Figures::of(&verdict.report) {
+        match &self.judged {
+            Some(Judged { name, report, measured: euler, .. }) => {
+                if let Some(figures) = Figures::of(report) {
                     line("quality", figures.to_string());
                 }
-                line("surface", in_words(verdict));
-                line("check", verdict::sentence(&verdict.report, &verdict.name));
+                let boundary = boundary(report.statistics.boundary_edges);
+                line("surface", format!("Euler number {euler}, {boundary}"));
+                line("check", verdict::sentence(report, name));
             }
             None => line("check", "left out (--no-check)".into()),
         }
-        if timings {
-            line("time", stages(laps));
-        }
-        line("total", time(total(laps)));
-        if !self.written.is_empty() {
-            line("written", output_names(&self.written));
-        }
-        if let Some(verdict) = self.verdict.as_ref().filter(|verdict| !verdict.passed()) {
-            line("written", "nothing: the mesh did not pass its check".into());
-            lines.push(verdict::findings(&verdict.report, &verdict.name));
-            lines.extend(verdict.complaints.iter().map(ToString::to_string));
-        }
-        lines.retain(|line| !line.is_empty());
+        lines.extend(judged::closing(self.judged.as_ref(), laps, timings, &self.written));
         lines.join("\n")
     }
 
     fn json(&self, laps: &[(String, Duration)]) -> Value {
         let Remeshed { mesh, curves, corners, parts, deviation, passes, .. } = &self.remeshed;
-        let verdict = match &self.verdict {
-            Some(verdict) if verdict.passed() => "passed",
-            Some(_) => "failed",
-            None => "not-checked",
-        };
-        let report = self.verdict.as_ref().map(|verdict| &verdict.report);
+        let report = self.judged.as_ref().map(|judged| &judged.report);
         json!({
             "schema": "trigrade-remesh/1",
-            "verdict": verdict,
+            "verdict": judged::word(self.judged.as_ref()),
             "input": self.name,
             "input_triangles": self.triangles,
             "triangles": mesh.triangles.len(),
@@ -247,19 +208,11 @@ impl Summary {
                 "flips": passes.flips,
                 "moves": passes.moves,
             },
-            "euler": self.verdict.as_ref().map(|verdict| verdict.euler),
+            "euler": self.judged.as_ref().map(|judged| judged.measured),
             "quality": report.and_then(Figures::of).map(|f| f.json()),
             "written": file_names(&self.written),
             "seconds": seconds(laps),
             "check": report,
         })
     }
-}
-
-fn in_words(verdict: &Verdict) -> String {
-    let boundary = match verdict.report.statistics.boundary_edges {
-        0 => "closed".to_owned(),
-        n => format!("{} boundary edges", count(n)),
-    };
-    format!("Euler number {}, {boundary}", verdict.euler)
 }

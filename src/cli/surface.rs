@@ -4,22 +4,21 @@ use super::arguments::{MeshArguments, Method};
 use super::check::write_json;
 use super::console::Console;
 use super::domain_file::malformed;
-use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
+use super::failure::{Diagnostic, EXIT_HOLDS, Failure};
 use super::forms::{OutputFile, output_files};
 use super::input::{Input, is_dash, load};
-use super::mesh::{certify, count, paths, read_back};
+use super::judged::{self, Judged, certify, judge, paths, read_back};
 use super::mesh_file::{self, Drawing};
-use super::outcome::{Checked, Outcome, file_names, output_names};
+use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::verdict::{self, Figures};
-use super::watch::{Watch, seconds, stages, time, total};
+use super::watch::{Watch, prediction, seconds};
+use super::words::{boundary, count};
+use crate::check::CheckOptions;
 use crate::check::certificate::FileHash;
 use crate::check::surface::{SurfaceLimits, SurfaceReport, check_on_model};
-use crate::check::{CheckOptions, Report};
 use crate::format::MeshView;
 use crate::format::model_file::{ModelForm, read_model};
-use crate::mesh::MeshData;
-use crate::mesher::Observer;
 use crate::model::Model;
 use crate::size::Prediction;
 use crate::structured::GridMethod;
@@ -86,7 +85,8 @@ pub fn run(
     let mut summary =
         Summary { name: input.name.clone(), patches: model.patches.len(), ..Summary::default() };
     if arguments.dry_run {
-        summary.prediction = Some(predict(&model, &options)?);
+        let predicted = prediction(|observer| mesh_model(&model, &options, observer));
+        summary.prediction = Some(predicted.map_err(|e| no_mesh(&e))?);
         return Ok(summary.outcome(&watch.finish(), arguments.timings));
     }
     let meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
@@ -97,13 +97,17 @@ pub fn run(
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
         watch.begin("check");
         let limits = SurfaceLimits::default();
-        let verdict = check_all(&meshes, (&model, &limits));
+        let judged = judge(&meshes, |name, mesh| {
+            let options = CheckOptions::new();
+            let (report, found) = check_on_model(mesh, (&model, &limits), None, &options);
+            Judged::new(name, report, found)
+        });
         if arguments.certificate.is_some() {
-            let plain = certify(&outputs, &files, Some((&verdict.name, &verdict.report)), None)?;
+            let plain = certify(&outputs, &files, &judged, None)?;
             let file = FileHash::of(&input.name, &[&input.bytes]);
             write_json(&mut outputs, files.len(), &plain.on_model(file, limits))?;
         }
-        summary.check = Some(verdict);
+        summary.judged = Some(judged);
     }
     summary.meshed = Some(meshed);
     if summary.exit() == EXIT_HOLDS {
@@ -126,29 +130,6 @@ fn method(arguments: &MeshArguments) -> Result<SurfaceMethod, Failure> {
         Method::DirectSurface => SurfaceMethod::Direct,
         _ => SurfaceMethod::Front,
     })
-}
-
-/// Stops the mesher as soon as it has predicted the number of triangles.
-#[derive(Default)]
-struct Predict {
-    prediction: Option<Prediction>,
-}
-
-impl Observer for Predict {
-    fn predicted(&mut self, prediction: Prediction) -> bool {
-        self.prediction = Some(prediction);
-        false
-    }
-}
-
-fn predict(model: &Model, options: &SurfaceOptions) -> Result<Prediction, Failure> {
-    let mut observer = Predict::default();
-    let outcome = mesh_model(model, options, &mut observer);
-    match (observer.prediction, outcome) {
-        (Some(prediction), _) => Ok(prediction),
-        (None, Err(error)) => Err(no_mesh(&error)),
-        (None, Ok(_)) => unreachable!("the mesher predicts before it meshes"),
-    }
 }
 
 fn no_mesh(error: &SurfaceMeshError) -> Failure {
@@ -181,33 +162,6 @@ fn write_all(
     Ok(())
 }
 
-/// The checks of one mesh that was read back.
-struct Verdict {
-    name: String,
-    report: Report,
-    surface: SurfaceReport,
-}
-
-impl Verdict {
-    fn passed(&self) -> bool {
-        self.report.passed()
-    }
-}
-
-/// Checks each mesh in space and against the model; the first that does not pass, or the first.
-fn check_all(meshes: &[(String, MeshData)], on: (&Model, &SurfaceLimits)) -> Verdict {
-    let mut first = None;
-    for (name, mesh) in meshes {
-        let (report, surface) = check_on_model(mesh, on, None, &CheckOptions::new());
-        let verdict = Verdict { name: name.clone(), report, surface };
-        if !verdict.passed() {
-            return verdict;
-        }
-        first.get_or_insert(verdict);
-    }
-    first.expect("at least one mesh is read back")
-}
-
 /// What is told of a run.
 #[derive(Default)]
 struct Summary {
@@ -215,21 +169,17 @@ struct Summary {
     patches: usize,
     prediction: Option<Prediction>,
     meshed: Option<SurfaceMeshed>,
-    check: Option<Verdict>,
+    judged: Option<Judged<SurfaceReport>>,
     written: Vec<PathBuf>,
 }
 
 impl Summary {
     fn exit(&self) -> u8 {
-        let passed = self.check.as_ref().is_none_or(Verdict::passed);
-        if passed { EXIT_HOLDS } else { EXIT_FINDINGS }
+        judged::exit(self.judged.as_ref())
     }
 
     fn outcome(self, laps: &[(String, Duration)], timings: bool) -> Outcome {
-        let checked = self.check.as_ref().map(|verdict| {
-            let (report, mesh) = (verdict.report.clone(), verdict.name.clone());
-            Box::new(Checked { report, mesh, domain: Some(self.name.clone()) })
-        });
+        let checked = self.judged.as_ref().map(|judged| judged.checked(&self.name));
         Outcome {
             exit: self.exit(),
             text: self.text(laps, timings),
@@ -255,49 +205,33 @@ impl Summary {
                 ),
             );
         }
-        match &self.check {
-            Some(verdict) => {
-                if let Some(figures) = Figures::of(&verdict.report) {
+        match &self.judged {
+            Some(Judged { name, report, measured, .. }) => {
+                if let Some(figures) = Figures::of(report) {
                     line("quality", figures.to_string());
                 }
-                line("surface", measures(&verdict.surface));
-                line("check", verdict::sentence(&verdict.report, &verdict.name));
+                line("surface", measures(measured));
+                line("check", verdict::sentence(report, name));
             }
             None if self.meshed.is_some() => line("check", "left out (--no-check)".into()),
             None => {}
         }
-        if timings {
-            line("time", stages(laps));
-        }
-        line("total", time(total(laps)));
-        if !self.written.is_empty() {
-            line("written", output_names(&self.written));
-        }
-        if let Some(verdict) = self.check.as_ref().filter(|verdict| !verdict.passed()) {
-            line("written", "nothing: the mesh did not pass its check".into());
-            lines.push(verdict::findings(&verdict.report, &verdict.name));
-        }
-        lines.retain(|line| !line.is_empty());
+        lines.extend(judged::closing(self.judged.as_ref(), laps, timings, &self.written));
         lines.join("\n")
     }
 
     fn json(&self, laps: &[(String, Duration)]) -> Value {
-        let verdict = match &self.check {
-            Some(verdict) if verdict.passed() => "passed",
-            Some(_) => "failed",
-            None => "not-checked",
-        };
         let predicted = self.prediction.or(self.meshed.as_ref().map(|meshed| meshed.prediction));
-        let report = self.check.as_ref().map(|verdict| &verdict.report);
+        let report = self.judged.as_ref().map(|judged| &judged.report);
         json!({
             "schema": "trigrade-mesh/1",
-            "verdict": verdict,
+            "verdict": judged::word(self.judged.as_ref()),
             "domain": self.name,
             "predicted": predicted.map(|p| p.triangles),
             "points": self.meshed.as_ref().map(|meshed| meshed.mesh.points.len()),
             "triangles": self.meshed.as_ref().map(|meshed| meshed.mesh.triangles.len()),
             "quality": report.and_then(Figures::of).map(|f| f.json()),
-            "surface": self.check.as_ref().map(|verdict| as_json(&verdict.surface)),
+            "surface": self.judged.as_ref().map(|judged| as_json(&judged.measured)),
             "written": file_names(&self.written),
             "seconds": seconds(laps),
             "check": report,
@@ -308,10 +242,7 @@ impl Summary {
 /// The figures of a mesh against its surface.
 fn measures(found: &SurfaceReport) -> String {
     let SurfaceReport { chord_error, normal_deviation_deg, euler, boundary_edges, .. } = found;
-    let boundary = match boundary_edges {
-        0 => "closed".to_owned(),
-        n => format!("{} boundary edges", count(*n as u64)),
-    };
+    let boundary = boundary(*boundary_edges as u64);
     format!(
         "chord error {chord_error:.3e}, normals within {normal_deviation_deg:.2}°, Euler number {euler}, {boundary}"
     )

@@ -5,12 +5,13 @@ use super::console::Console;
 use super::failure::{Diagnostic, EXIT_FINDINGS, EXIT_HOLDS, Failure};
 use super::outcome::Outcome;
 use super::output::{Cleanup, Outputs};
+use super::words::did_you_mean;
 use crate::torture::export::BoundaryForm;
 use crate::torture::generate::{Selection, families};
 use crate::torture::report;
 use crate::torture::run::{
     Limits, PRESETS, Plan, Preset, Record, Run, RunError, Running, Tool, ToolError, read_corpus,
-    replay, run,
+    replay, run as run_all,
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -21,7 +22,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// # Errors
 /// Exit code 2: the mesher cannot be started, a name is unknown, a folder cannot be used.
-pub fn torture(
+pub fn run(
     arguments: &TortureArguments,
     console: &Console,
     cleanup: &Cleanup,
@@ -41,7 +42,7 @@ pub fn torture(
             let corpus = read_corpus(folder).map_err(|error| cannot_run(&error.into()))?;
             watched(console, corpus.cases.len() as u64, |progress| replay(&plan, &corpus, progress))
         }
-        None => watched(console, plan.cases, |progress| run(&plan, progress)),
+        None => watched(console, plan.cases, |progress| run_all(&plan, progress)),
     };
     let run = run.map_err(|error| cannot_run(&error))?;
     if let Some(out) = &plan.out {
@@ -77,15 +78,16 @@ fn watched(
 }
 
 fn plan(arguments: &TortureArguments) -> Result<Plan, Failure> {
-    let families = arguments.family.clone();
-    if let Some(unknown) = families.iter().find(|name| !crate_has(name)) {
-        let message = format!("there is no family `{unknown}`");
+    let wanted = arguments.family.clone();
+    if let Some(unknown) = wanted.iter().find(|name| !is_family(name)) {
+        let near = did_you_mean(unknown, families().map(|family| family.name));
+        let message = format!("there is no family `{unknown}`{near}");
         let help = "`trigrade torture --list` names all of them";
         return Err(Failure::cannot_run(Diagnostic::new(message).help(help)));
     }
     let selection = Selection {
         seed: arguments.seed,
-        families,
+        families: wanted,
         size_max: arguments.max_size as usize,
         plain: arguments.plain,
     };
@@ -103,7 +105,7 @@ fn plan(arguments: &TortureArguments) -> Result<Plan, Failure> {
     })
 }
 
-fn crate_has(name: &str) -> bool {
+fn is_family(name: &str) -> bool {
     families().any(|family| family.name == name)
 }
 
@@ -143,7 +145,8 @@ fn tool(arguments: &TortureArguments) -> Result<Tool, Failure> {
 fn preset(name: &str) -> Result<Tool, Failure> {
     let preset = Preset::named(name).ok_or_else(|| {
         let known = PRESETS.map(|preset| preset.name).join(", ");
-        let message = format!("there is no preset `{name}`");
+        let near = did_you_mean(name, PRESETS.map(|preset| preset.name));
+        let message = format!("there is no preset `{name}`{near}");
         Failure::cannot_run(Diagnostic::new(message).help(format!("there are {known}")))
     })?;
     let program = std::env::current_exe()

@@ -1,7 +1,7 @@
 //! The checker's answer, told to people: a sentence, or the findings as a compiler tells errors.
 
 use super::failure::Diagnostic;
-use super::mesh::count;
+use super::words::count;
 use crate::check::{CheckOptions, Finding, GateOutcome, Metric, Report, Verdict, check};
 use crate::domain::Domain;
 use crate::mesh::MeshData;

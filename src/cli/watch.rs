@@ -1,7 +1,7 @@
 //! Watching the mesher: a progress bar on a terminal, and the time of each stage.
 
 use super::console::Console;
-use super::mesh::count;
+use super::words::count;
 use crate::mesher::{Observer, Stage};
 use crate::size::Prediction;
 use indicatif::ProgressBar;
@@ -61,6 +61,36 @@ impl Observer for Watch {
     fn progress(&mut self, triangles: usize) -> bool {
         self.bar.set_position(triangles as u64);
         true
+    }
+}
+
+/// Stops the mesher as soon as it has predicted the number of triangles.
+#[derive(Debug, Default)]
+pub struct Forecast {
+    prediction: Option<Prediction>,
+}
+
+impl Observer for Forecast {
+    fn predicted(&mut self, prediction: Prediction) -> bool {
+        self.prediction = Some(prediction);
+        false
+    }
+}
+
+/// The prediction alone, of a mesher that is run with the observer given.
+///
+/// # Errors
+/// Those of the mesher that come before its prediction.
+///
+/// # Panics
+/// When it makes a mesh without having predicted.
+pub fn prediction<T, E>(mesh: impl FnOnce(&mut Forecast) -> Result<T, E>) -> Result<Prediction, E> {
+    let mut forecast = Forecast::default();
+    let outcome = mesh(&mut forecast);
+    match (forecast.prediction, outcome) {
+        (Some(prediction), _) => Ok(prediction),
+        (None, Err(error)) => Err(error),
+        (None, Ok(_)) => unreachable!("meshers predict before they mesh"),
     }
 }
 

@@ -12,10 +12,11 @@ use std::fmt::Write as _;
 
 const TEMPLATE: &str = include_str!("viewer/viewer.html");
 const CSS: &str = include_str!("viewer/viewer.css");
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
     include_str!("viewer/data.js"),
     include_str!("viewer/measures.js"),
     include_str!("viewer/camera.js"),
+    include_str!("viewer/detail.js"),
     include_str!("viewer/webgl.js"),
     include_str!("viewer/canvas2d.js"),
     include_str!("viewer/main.js"),
@@ -71,7 +72,10 @@ impl<'a> Viewer<'a> {
 /// `view.html#measure=min_angle&view=0,0,1,1&show=background&triangle=12`; the keys are `measure`
 /// (a [`Metric`](crate::check::Metric) by its name, `edge_length`, `order`, `layer-0`, ...),
 /// `palette`, `view`, `triangle`, `finding` (from 1), `frame`, `show`, `hide`, `facts=all` (every
-/// measure of the chosen triangle) and `renderer=canvas`.
+/// measure of the chosen triangle), `renderer` (`webgl2` or `canvas`; without it the faster one),
+/// `move=N`, which turns or pans for N frames and leaves the median time of one, in milliseconds, in
+/// `data-frame` of the document's body, and `detail=coarse`: a mesh in space turns as a coarser one
+/// however fast the machine is.
 ///
 /// # Errors
 /// [`DrawError::ValueCount`] when a layer does not fit the mesh, and [`DrawError::SpacingCount`]

@@ -49,6 +49,17 @@ pub fn err(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// All that it said.
+pub fn said(output: &Output) -> String {
+    out(output) + &err(output)
+}
+
+/// Its standard output as JSON.
+#[track_caller]
+pub fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", said(output)))
+}
+
 /// Demands an exit code, and that nothing panicked.
 #[track_caller]
 pub fn assert_exit(output: &Output, code: i32) {

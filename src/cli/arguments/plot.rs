@@ -1,8 +1,7 @@
 //! The flags of `trigrade plot`.
 
-use super::{DomainReading, MeshReading};
+use super::{Against, MeshReading, metric_meant};
 use crate::check::Metric;
-use crate::check::quality::metric::UnknownMetric;
 use crate::draw::View;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -31,12 +30,9 @@ pub struct PlotArguments {
     /// The metric that colours triangles, by a name that `trigrade check --gate` knows, or `none`.
     #[arg(long, value_name = "METRIC|none", default_value = "radius_ratio")]
     pub colour: Colour,
-    /// Mark what `check` finds against this domain; a viewer shows its background mesh too.
-    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
-    pub domain: Option<PathBuf>,
-    /// Form of the domain, whatever its extension.
-    #[arg(long, value_name = "FORM", requires = "domain")]
-    pub domain_from: Option<String>,
+    /// What it must cover: findings are marked, and a viewer shows the background mesh too.
+    #[command(flatten)]
+    pub against: Against,
     /// Draw only this part of the plane.
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
     pub window: Option<View>,
@@ -49,23 +45,19 @@ pub struct PlotArguments {
     pub width: u32,
 }
 
-impl PlotArguments {
-    /// How the domain is read.
-    #[must_use]
-    pub fn domain_reading(&self) -> DomainReading {
-        DomainReading { from: self.domain_from.clone(), farfield: None }
-    }
-}
-
 /// `--colour`: a metric, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour(pub Option<Metric>);
 
 impl FromStr for Colour {
-    type Err = UnknownMetric;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, UnknownMetric> {
-        if text.trim() == "none" { Ok(Self(None)) } else { text.parse().map(|m| Self(Some(m))) }
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim() == "none" {
+            return Ok(Self(None));
+        }
+        let metric = text.parse::<Metric>().map_err(|e| format!("{e}{}", metric_meant(text)))?;
+        Ok(Self(Some(metric)))
     }
 }
 
@@ -78,6 +70,6 @@ mod tests {
         assert_eq!("none".parse(), Ok(Colour(None)));
         assert_eq!("min-angle".parse(), Ok(Colour(Some(Metric::MinAngle))));
         let error = "beauty".parse::<Colour>().expect_err("no metric");
-        assert!(error.to_string().contains("radius_ratio"), "{error}");
+        assert!(error.contains("radius_ratio"), "{error}");
     }
 }

@@ -1,6 +1,6 @@
 //! The flags of `trigrade study` and `trigrade compare`.
 
-use super::{DomainReading, MeshReading};
+use super::{Against, MeshReading};
 use crate::study::{DOMAINS, Detail};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum, ValueHint};
@@ -68,12 +68,9 @@ pub struct CompareArguments {
     /// How both are read.
     #[command(flatten)]
     pub reading: MeshReading,
-    /// The domain that both must cover.
-    #[arg(long, value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
-    pub domain: Option<PathBuf>,
-    /// Form of the domain, whatever its extension.
-    #[arg(long, value_name = "FORM", requires = "domain")]
-    pub domain_from: Option<String>,
+    /// What both must cover.
+    #[command(flatten)]
+    pub against: Against,
     /// Both side by side at one scale, and their histograms: .svg, .png or .html, which has the
     /// table too; repeatable.
     #[arg(long = "output", short, value_name = "OUT", value_hint = ValueHint::FilePath)]
@@ -85,12 +82,4 @@ pub struct CompareArguments {
     #[arg(long, value_name = "PIXELS", default_value_t = 1400)]
     #[arg(value_parser = clap::value_parser!(u32).range(200..=20_000))]
     pub width: u32,
-}
-
-impl CompareArguments {
-    /// How the domain is read.
-    #[must_use]
-    pub fn domain_reading(&self) -> DomainReading {
-        DomainReading { from: self.domain_from.clone(), farfield: None }
-    }
 }

@@ -77,9 +77,20 @@ function halfExtents() {
 }
 const extents = halfExtents();
 
+/** Largest distance of a point from the centre, in the mesh's unit: it turns within that. */
+function reach() {
+  let most = 0;
+  for (let v = 0; v < points.n; v++) {
+    const distance = Math.hypot(...unitOf(points, v));
+    if (distance > most && Number.isFinite(distance)) most = distance;
+  }
+  return most || 1;
+}
+const radius = spatial ? reach() : 1;
+
 function fitZoom() {
   const margin = 0.92;
-  if (spatial) return (margin * Math.min(camera.width, camera.height)) / 2 / 1.3;
+  if (spatial) return (margin * Math.min(camera.width, camera.height)) / 2 / radius;
   return margin * Math.min(camera.width / 2 / extents[0], camera.height / 2 / extents[1]);
 }
 

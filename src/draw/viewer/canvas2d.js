@@ -6,10 +6,15 @@ function canvasRenderer(canvas) {
   let shades = new Uint8Array(count), colours = [], image = null, pixels = null, depths = null;
   const x = new Float64Array(points.n), y = new Float64Array(points.n), z = new Float64Array(points.n);
 
-  function place(dots) {
-    for (let v = 0; v < points.n; v++) {
-      const p = projectPoint(v);
-      x[v] = p[0] * dots; y[v] = p[1] * dots; z[v] = p[2] * camera.zoom * dots;
+  /** Places points, all or those listed; without arrays for each, for there are millions. */
+  function place(dots, list) {
+    const r = camera.rotation, [cx, cy, cz] = camera.centre, u = points.unit, f = camera.zoom * dots;
+    const [left, top] = [(camera.width / 2) * dots, (camera.height / 2) * dots];
+    for (let i = 0, n = list ? list.length : points.n; i < n; i++) {
+      const v = list ? list[i] : i, a = u[3 * v] - cx, b = u[3 * v + 1] - cy, c = u[3 * v + 2] - cz;
+      x[v] = left + (r[0] * a + r[1] * b + r[2] * c) * f;
+      y[v] = top - (r[3] * a + r[4] * b + r[5] * c) * f;
+      z[v] = (r[6] * a + r[7] * b + r[8] * c) * f;
     }
   }
 
@@ -23,13 +28,24 @@ function canvasRenderer(canvas) {
     if (depths) depths.fill(-Infinity);
   }
 
+  const smooth = (from, to, x) => {
+    const t = Math.min(1, Math.max(0, (x - from) / (to - from)));
+    return t * t * (3 - 2 * t);
+  };
+
+  // As in the shader: elements of a few pixels keep the tone of their lines without the lines.
+  const TONE = 0.11;
+  const darkness = (height) => {
+    const lined = smooth(1.5, 5, height);
+    return [lined * (0.35 + 0.45 * smooth(4, 24, height)), (1 - lined) * TONE];
+  };
+
   // The triangle in hand: signed distances to its sides are a x + b y + c, positive inside.
   const a = new Float64Array(3), b = new Float64Array(3), c = new Float64Array(3), corner = new Uint32Array(3);
 
-  /** Sets up a triangle; returns its signed double area, 0 if there is nothing to fill. */
-  function take(t) {
-    for (let i = 0; i < 3; i++) corner[i] = triangles[3 * t + i];
-    const [p, q, r] = corner;
+  /** Sets up the triangle in `corner`; returns its signed double area, 0 if there is nothing to fill. */
+  function take() {
+    const p = corner[0], q = corner[1], r = corner[2];
     if (Math.max(x[p], x[q], x[r]) < 0 || Math.min(x[p], x[q], x[r]) > canvas.width) return 0;
     if (Math.max(y[p], y[q], y[r]) < 0 || Math.min(y[p], y[q], y[r]) > canvas.height) return 0;
     const area = (x[q] - x[p]) * (y[r] - y[p]) - (x[r] - x[p]) * (y[q] - y[p]);
@@ -56,8 +72,8 @@ function canvasRenderer(canvas) {
     return [red * light, green * light, blue * light];
   }
 
-  /** Fills the pixels whose centres lie in the triangle; `ink` is the darkness of its edges. */
-  function fill([red, green, blue], ink, dots, hatched, dz) {
+  /** Fills the pixels whose centres lie in the triangle; `ink` is the darkness of its edges, `tone` that of all of it. */
+  function fill([red, green, blue], [ink, tone], dots, hatched, dz) {
     const top = Math.max(0, Math.ceil(Math.min(y[corner[0]], y[corner[1]], y[corner[2]]) - 0.5));
     const bottom = Math.min(canvas.height - 1, Math.floor(Math.max(y[corner[0]], y[corner[1]], y[corner[2]]) - 0.5));
     for (let row = top; row <= bottom; row++) {
@@ -76,7 +92,7 @@ function canvasRenderer(canvas) {
           depths[at] = depth;
         }
         const near = Math.min(a[0] * px + b[0] * py + c[0], a[1] * px + b[1] * py + c[1], a[2] * px + b[2] * py + c[2]);
-        const keep = 1 - ink * Math.max(0, 1 - near / (0.9 * dots));
+        const keep = 1 - tone - (near < 0.9 * dots ? ink * (1 - smooth(0, 0.9 * dots, near)) : 0);
         const stripe = hatched && (column + row) % (9 * dots) < 2.5 * dots;
         const [r, g, bl] = stripe ? [194, 24, 91] : [red, green, blue];
         pixels[at] = 0xff000000 | ((bl * keep) << 16) | ((g * keep) << 8) | (r * keep);
@@ -94,15 +110,48 @@ function canvasRenderer(canvas) {
 
   function drawTriangles(frame, fresh, dots, wire) {
     for (let t = 0; t < frame; t++) {
-      const area = drawable[t] ? take(t) : 0;
+      for (let i = 0; i < 3; i++) corner[i] = triangles[3 * t + i];
+      const area = drawable[t] ? take() : 0;
       if (area === 0) continue;
       const [p, q, r] = corner;
       const longest = Math.max(Math.abs(x[q] - x[p]), Math.abs(x[r] - x[p]), Math.abs(y[q] - y[p]), Math.abs(y[r] - y[p]));
       const height = Math.abs(area) / longest / dots;
-      const ink = !wire ? 0 : height < 3 ? 0.11 : Math.min(0.75, 0.3 + height / 50);
       // On the screen y points down: a counterclockwise triangle has a negative area.
       const colour = colourOf(t, area, frame < count && frame - 1 - t < fresh);
-      fill(colour, ink, dots, !spatial && area > 0, spatial && depthPlane(area));
+      fill(colour, wire ? darkness(height) : [0, 0], dots, !spatial && area > 0, spatial && depthPlane(area));
+    }
+  }
+
+  /** The coarser mesh, in the tone of small triangles with their lines. */
+  function drawCoarse({ kept, corners }, dots, wire) {
+    for (let i = 0; i < kept.length; i++) {
+      for (let k = 0; k < 3; k++) corner[k] = corners[3 * i + k];
+      const area = take();
+      if (area === 0) continue;
+      fill(colourOf(kept[i], area, false), [0, wire ? TONE : 0], dots, false, spatial && depthPlane(area));
+    }
+  }
+
+  /** Lines in space, hidden where triangles lie before them by more than their own width. */
+  function drawLinesInSpace(dots, { of, list, width, ink }) {
+    const colour = 0xff000000 | (ink[2] << 16) | (ink[1] << 8) | ink[0], reach = Math.max(1, Math.round(width * dots));
+    for (let i = 0; i < list.length; i += 2) {
+      const [p, q] = [list[i], list[i + 1]].map((v) => {
+        const [px, py, pz] = project(unitOf(of, v));
+        return [px * dots, py * dots, pz * camera.zoom * dots];
+      });
+      const steps = Math.ceil(Math.max(Math.abs(q[0] - p[0]), Math.abs(q[1] - p[1]), 1));
+      // A line far longer than the canvas is for the most part not on it.
+      if (!(steps < 4 * (canvas.width + canvas.height))) continue;
+      for (let s = 0; s <= steps; s++) {
+        const [lx, ly, lz] = p.map((a, k) => a + ((q[k] - a) * s) / steps);
+        for (let k = 0; k < reach * reach; k++) {
+          const column = Math.floor(lx - reach / 2) + (k % reach), row = Math.floor(ly - reach / 2) + Math.floor(k / reach);
+          if (column < 0 || row < 0 || column >= canvas.width || row >= canvas.height) continue;
+          const at = row * canvas.width + column;
+          if (lz + 2 * reach > depths[at]) pixels[at] = colour;
+        }
+      }
     }
   }
 
@@ -124,12 +173,14 @@ function canvasRenderer(canvas) {
     setShades(of) { shades = of; },
     setPalette(list) { colours = list; },
     finish() {},
-    draw({ dots, wire, frame, fresh, lines }) {
-      place(dots);
+    draw({ dots, wire, frame, fresh, lines, detail }) {
+      place(dots, detail && detail.used);
       clear();
-      drawTriangles(frame, fresh, dots, wire);
+      if (detail) drawCoarse(detail, dots, wire);
+      else drawTriangles(frame, fresh, dots, wire);
+      if (spatial) for (const set of lines) drawLinesInSpace(dots, set);
       context.putImageData(image, 0, 0);
-      for (const set of lines) drawLines(dots, set);
+      if (!spatial) for (const set of lines) drawLines(dots, set);
     },
   };
 }

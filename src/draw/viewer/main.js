@@ -1,19 +1,57 @@
 // The page: what is shown, the side panel, the pointer and the keys.
 
 const $ = (id) => document.getElementById(id);
-const scene = $("scene"), overlay = $("overlay"), pen = overlay.getContext("2d");
+let scene = $("scene");
+const overlay = $("overlay"), pen = overlay.getContext("2d");
 const state = { measure: measures[0], range: null, palette: meta.palette, frame: count, chosen: -1, finding: -1, playing: false, moving: 0 };
 const wanted = new URLSearchParams(location.hash.slice(1));
-const renderer = (wanted.get("renderer") !== "canvas" && webglRenderer(scene)) || canvasRenderer(scene);
-let summary = null, dots = 1;
+let renderer = null, summary = null, dots = 1;
+
+/** Milliseconds above which a drawing is too slow to follow the pointer. */
+const SLOW = 60;
+
+/** WebGL where there is one; where it draws in software, filling the pixels here is much faster. */
+function chooseRenderer() {
+  const webgl = wanted.get("renderer") !== "canvas" && webglRenderer(scene);
+  if (!webgl) return canvasRenderer(scene);
+  if (wanted.get("renderer") === "webgl2" || timeOfAll(webgl) < 5 * SLOW) return webgl;
+  // A canvas that has been drawn to by WebGL cannot be drawn to otherwise.
+  const other = scene.cloneNode();
+  scene.replaceWith(other);
+  scene = other;
+  return canvasRenderer(scene);
+}
+
+/** How long a drawing takes, judged by that of a few triangles. */
+function timeOfAll(candidate) {
+  const few = Math.max(4096, count >> 6);
+  if (few >= count) return 0;
+  const time = (frame) => {
+    const start = performance.now();
+    candidate.draw({ dots, wire: true, frame, fresh: 0, lines: [], detail: null });
+    candidate.finish();
+    return performance.now() - start;
+  };
+  // The first drawing makes the shaders ready.
+  const [, none, some] = [time(few), time(0), time(few)];
+  return ((some - none) / few) * count;
+}
 
 // ---- drawing
+
+/** Acts at the next frame, or soon where none comes: a browser without a screen may stop them. */
+function atNextFrame(action) {
+  let done = false;
+  const once = () => { if (!done) { done = true; action(); } };
+  requestAnimationFrame(once);
+  setTimeout(once, 100);
+}
 
 let scheduled = false;
 function redraw() {
   if (scheduled) return;
   scheduled = true;
-  requestAnimationFrame(() => { scheduled = false; paint(); });
+  atNextFrame(() => { scheduled = false; paint(); });
 }
 
 function resize() {
@@ -39,7 +77,7 @@ let cost = 0, drawn = null;
 
 /** Moves the last drawing along with the camera, where a new one would take too long. */
 function carryAlong() {
-  const slow = cost > 60 && state.moving > 0 && drawn && !spatial;
+  const slow = cost > SLOW && state.moving > 0 && drawn && !spatial;
   if (!slow) { scene.style.transform = ""; return false; }
   const f = camera.zoom / drawn.zoom, [x, y] = project(drawn.centre);
   scene.style.transform = `translate(${x - camera.width / 2}px, ${y - camera.height / 2}px) scale(${f})`;
@@ -48,7 +86,10 @@ function carryAlong() {
 
 function drawScene() {
   const start = performance.now(), fresh = Math.max(1, Math.round(count / 150));
-  renderer.draw({ dots, wire: $("wire").checked, frame: state.frame, fresh, lines: lineSets() });
+  const isSlow = cost > SLOW || wanted.get("detail") === "coarse";
+  const detail = isSlow && state.moving > 0 && spatial && state.frame === count ? coarse() : null;
+  document.body.dataset.drawn = detail ? detail.kept.length : state.frame;
+  renderer.draw({ dots, wire: $("wire").checked, frame: state.frame, fresh, lines: lineSets(), detail });
   drawn = { centre: [...camera.centre], zoom: camera.zoom };
   if (state.moving || state.playing) return;
   renderer.finish();
@@ -460,13 +501,36 @@ function applyPlace() {
   setFrame(wanted.has("frame") ? number("frame") || 0 : count);
 }
 
+/** Moves the picture for some frames, as the pointer would, and tells how long one took. */
+function moveFor(frames) {
+  const times = [];
+  let before = performance.now();
+  const step = () => {
+    const now = performance.now();
+    times.push(now - before);
+    before = now;
+    if (times.length > frames) {
+      document.body.dataset.frame = times.sort((a, b) => a - b)[times.length >> 1].toFixed(1);
+      document.body.dataset.moved = document.body.dataset.drawn;
+      return;
+    }
+    if (spatial) orbit(4, 1);
+    else pan(4, 1);
+    settle();
+    atNextFrame(step);
+  };
+  atNextFrame(step);
+}
+
 fillPanel();
 listen();
 applyAddress();
 resize();
 fit();
+renderer = chooseRenderer();
 recolour();
 applyPlace();
 paint();
 document.body.dataset.ready = renderer.kind;
 document.body.dataset.seconds = (performance.now() / 1000).toFixed(2);
+if (Number(wanted.get("move")) > 0) moveFor(Number(wanted.get("move")));

@@ -130,7 +130,8 @@ function summarise(measure, range) {
   return {
     low, high, own, mean, n, fraction, bars, at,
     percentile: values[Math.max(0, Math.ceil(0.99 * n) - 1)], worst: values[n - 1],
-    below: values.some((v) => v < low), above: values.some((v) => v > high),
+    // By more than rounding: R/(2r) of an equilateral triangle is 1, or a little less.
+    below: values.some((v) => v < low - 1e-9 * (high - low)), above: values.some((v) => v > high + 1e-9 * (high - low)),
   };
 }
 

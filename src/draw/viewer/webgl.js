@@ -98,27 +98,56 @@ function webglRenderer(canvas) {
   let origin = [0, 0, 0];
   const sets = new Map();
 
-  const surfaceArrays = gl.createVertexArray();
-  gl.bindVertexArray(surfaceArrays);
-  gl.bindBuffer(gl.ARRAY_BUFFER, places);
-  gl.enableVertexAttribArray(0);
-  gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-  gl.bindBuffer(gl.ARRAY_BUFFER, shades);
-  gl.enableVertexAttribArray(1);
-  gl.vertexAttribPointer(1, 1, gl.UNSIGNED_BYTE, true, 0, 0);
-  gl.bindVertexArray(null);
+  function arraysOf(places, shades) {
+    const arrays = gl.createVertexArray();
+    gl.bindVertexArray(arrays);
+    gl.bindBuffer(gl.ARRAY_BUFFER, places);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, shades);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 1, gl.UNSIGNED_BYTE, true, 0, 0);
+    gl.bindVertexArray(null);
+    return arrays;
+  }
+  const surfaceArrays = arraysOf(places, shades);
+
+  const fillBuffer = (buffer, data) => {
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+  };
+
+  /** Places of so many corners; corner i is point `pointOf(i)`, and left out if that is below 0. */
+  function uploadPlaces(buffer, n, pointOf) {
+    const data = new Float32Array(3 * n);
+    for (let i = 0; i < n; i++) {
+      const v = pointOf(i);
+      if (v >= 0) for (let k = 0; k < 3; k++) data[3 * i + k] = points.unit[3 * v + k] - origin[k];
+    }
+    fillBuffer(buffer, data);
+  }
+
+  let tones = new Uint8Array(count);
+  function uploadShades(buffer, n, triangleOf) {
+    const data = new Uint8Array(3 * n);
+    for (let i = 0; i < n; i++) data[3 * i] = data[3 * i + 1] = data[3 * i + 2] = tones[triangleOf(i)];
+    fillBuffer(buffer, data);
+  }
 
   function upload() {
-    const data = new Float32Array(9 * count);
-    for (let t = 0; t < count; t++) {
-      if (!drawable[t]) continue;
-      for (let c = 0; c < 3; c++)
-        for (let k = 0; k < 3; k++)
-          data[9 * t + 3 * c + k] = points.unit[3 * triangles[3 * t + c] + k] - origin[k];
-    }
-    gl.bindBuffer(gl.ARRAY_BUFFER, places);
-    gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+    uploadPlaces(places, 3 * count, (i) => (drawable[(i / 3) | 0] ? triangles[i] : -1));
     for (const set of sets.values()) uploadLines(set);
+    coarseArrays = null;
+  }
+
+  /** The arrays of the coarser mesh, made anew when places or shades are others. */
+  let coarseArrays = null;
+  function arraysOfCoarse({ kept, corners }) {
+    if (coarseArrays) return coarseArrays;
+    const [places, shades] = [gl.createBuffer(), gl.createBuffer()];
+    uploadPlaces(places, corners.length, (i) => corners[i]);
+    uploadShades(shades, kept.length, (i) => kept[i]);
+    return (coarseArrays = arraysOf(places, shades));
   }
 
   function uploadLines(set) {
@@ -174,10 +203,9 @@ function webglRenderer(canvas) {
   return {
     kind: "webgl2",
     setShades(of) {
-      const data = new Uint8Array(3 * count);
-      for (let t = 0; t < count; t++) data[3 * t] = data[3 * t + 1] = data[3 * t + 2] = of[t];
-      gl.bindBuffer(gl.ARRAY_BUFFER, shades);
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      tones = of;
+      uploadShades(shades, count, (t) => t);
+      coarseArrays = null;
     },
     setPalette(colours) {
       gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -187,7 +215,7 @@ function webglRenderer(canvas) {
     },
     /** Waits until what was drawn is there. */
     finish() { gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
-    draw({ dots, wire, frame, fresh, lines }) {
+    draw({ dots, wire, frame, fresh, lines, detail }) {
       const far = Math.max(...camera.centre.map((c, k) => Math.abs(c - origin[k]))) * camera.zoom;
       if (far > 1 << 19) { origin = [...camera.centre]; upload(); }
       gl.viewport(0, 0, canvas.width, canvas.height);
@@ -196,15 +224,16 @@ function webglRenderer(canvas) {
       if (spatial) gl.enable(gl.DEPTH_TEST);
       surface.use();
       aim(surface);
-      gl.uniform1f(surface.at("wire"), wire ? 1 : 0);
+      // Lines of the coarser mesh would show triangles that there are not.
+      gl.uniform1f(surface.at("wire"), wire && !detail ? 1 : 0);
       gl.uniform1i(surface.at("spatial"), spatial);
       gl.uniform1i(surface.at("clockwise"), 0);
       gl.uniform1i(surface.at("newest"), frame < count ? frame - 1 : -1);
       gl.uniform1i(surface.at("fresh"), fresh);
       gl.uniform1f(surface.at("dots"), dots);
       gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.bindVertexArray(surfaceArrays);
-      gl.drawArrays(gl.TRIANGLES, 0, 3 * frame);
+      gl.bindVertexArray(detail ? arraysOfCoarse(detail) : surfaceArrays);
+      gl.drawArrays(gl.TRIANGLES, 0, detail ? detail.corners.length : 3 * frame);
       for (const set of lines) drawLines(dots, set);
       gl.bindVertexArray(null);
     },

@@ -116,11 +116,18 @@ fn shell(command: &str, limits: &Limits) -> Command {
     shell
 }
 
-#[cfg(not(unix))]
+/// The command line goes to `cmd` as it stands: it does not know the quoting that arguments get.
+#[cfg(windows)]
 fn shell(command: &str, _limits: &Limits) -> Command {
+    use std::os::windows::process::CommandExt;
     let mut shell = Command::new("cmd");
-    shell.args(["/C", command]);
+    shell.raw_arg("/S /C").raw_arg(format!("\"{command}\""));
     shell
+}
+
+#[cfg(not(any(unix, windows)))]
+fn shell(command: &str, _limits: &Limits) -> Command {
+    Command::new(command)
 }
 
 #[cfg(unix)]
