@@ -69,6 +69,7 @@ pub(super) struct Searcher {
 /// How far a search has come.
 struct Goal {
     worst: f64,
+    aspect: f64,
     /// Less excess than this is a success, or a better one.
     bound: f64,
     found: bool,
@@ -89,7 +90,14 @@ impl Searcher {
         let now = self.base.worth();
         let bound = now.excess - GAIN_MIN;
         let everything = breadth == 0 || now.worst > BAD;
-        let mut goal = Goal { worst: now.worst, bound, found: false, tried: 0, everything };
+        let mut goal = Goal {
+            worst: now.worst,
+            aspect: now.aspect,
+            bound,
+            found: false,
+            tried: 0,
+            everything,
+        };
         let mut seen = vec![now.excess];
         self.around.clear();
         self.around.push(here);
@@ -146,8 +154,8 @@ impl Searcher {
             goal.tried += 1;
             let unflipped = if goal.everything { f64::INFINITY } else { HOPELESS_UNFLIPPED };
             self.trial.relax(quantum, [unflipped, HOPELESS].map(|factor| factor * goal.bound));
-            let Worth { excess, worst } = self.trial.worth();
-            if excess < goal.bound && worst <= goal.worst {
+            let Worth { excess, worst, aspect } = self.trial.worth();
+            if excess < goal.bound && worst <= goal.worst && aspect <= goal.aspect {
                 goal.bound = excess;
                 goal.found = true;
                 std::mem::swap(&mut self.trial, &mut self.best);

@@ -4,7 +4,9 @@
 //! The energy is the sum over the triangles of f^2, where f = (sum of squared sides) /
 //! (4 sqrt(3) area) is the inverse mean ratio (Knupp, "Algebraic mesh quality metrics", 2001): 1 for
 //! an equilateral triangle, infinite for a flat one, smooth between, and free of square roots. Near
-//! 1 it is R/(2r) up to a factor: R/(2r) - 1 = 9/8 (f - 1) to second order.
+//! 1 it is R/(2r) up to a factor: R/(2r) - 1 = 9/8 (f - 1) to second order. Of bad triangles they think
+//! differently: f takes a flat one with an angle near 180 degrees for far better than R/(2r) does, so
+//! among these R/(2r) must not rise either.
 
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
@@ -17,6 +19,32 @@ pub(super) fn inverse_mean_ratio(a: Point2, b: Point2, c: Point2) -> f64 {
     let double_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     let squares = a.distance_sq(b) + b.distance_sq(c) + c.distance_sq(a);
     if double_area > 0.0 { squares / (TWO_SQRT_3 * double_area) } else { f64::INFINITY }
+}
+
+/// Triangles with a larger inverse mean ratio are measured by R/(2r), too.
+const POOR: f64 = 1.3;
+
+/// R/(2r) of a triangle whose inverse mean ratio f calls for it; 1 for others.
+pub(super) fn aspect_of_poor(f: f64, [a, b, c]: [Point2; 3]) -> f64 {
+    if f <= POOR {
+        return 1.0;
+    }
+    let [a, b, c] = [b.distance(c), c.distance(a), a.distance(b)];
+    let denominator = (b + c - a) * (c + a - b) * (a + b - c);
+    if denominator > 0.0 { a * b * c / denominator } else { f64::INFINITY }
+}
+
+/// The worst R/(2r) of the poor triangles around `v`, at least 1.
+fn poor_aspect(v: Point2, link: &[Point2]) -> f64 {
+    let before = link.iter().skip(link.len() - 1).chain(link);
+    let corners = before.zip(link).map(|(&u, &w)| [v, u, w]);
+    let aspect = |[v, u, w]: [Point2; 3]| aspect_of_poor(inverse_mean_ratio(v, u, w), [v, u, w]);
+    corners.map(aspect).fold(1.0, f64::max)
+}
+
+/// Whether a move leaves the worst poor triangle of the star as it is or better.
+fn is_no_poorer(from: Point2, to: Point2, link: &[Point2], now: &Energy) -> bool {
+    now.worst <= POOR * TWO_SQRT_3 || poor_aspect(to, link) <= poor_aspect(from, link)
 }
 
 /// An edge out of the vertex, and its squared length.
@@ -122,7 +150,10 @@ pub(super) fn better_place(
         }
         let place = Point2::new(v.x + dx, v.y + dy);
         let place = quantum.map_or(place, |q| place.rounded_to(q));
-        if is_better(place, link, &now) && is_valid(place, link) {
+        if is_better(place, link, &now)
+            && is_no_poorer(v, place, link, &now)
+            && is_valid(place, link)
+        {
             return Some(place);
         }
         (dx, dy) = (0.5 * dx, 0.5 * dy);

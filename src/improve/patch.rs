@@ -2,7 +2,7 @@
 //! topology can be tried, relaxed and judged, and thrown away when it was no good.
 
 use super::degree::Degrees;
-use super::energy::inverse_mean_ratio;
+use super::energy::{aspect_of_poor, inverse_mean_ratio};
 use super::places::Places;
 use super::smooth::{NOWHERE, Sheet, Smoother};
 use crate::point::Point2;
@@ -42,6 +42,8 @@ pub(super) struct Worth {
     pub(super) excess: f64,
     /// Worst inverse mean ratio.
     pub(super) worst: f64,
+    /// Worst R/(2r) of its poor triangles; 1 without any.
+    pub(super) aspect: f64,
 }
 
 /// How a patch is cut.
@@ -172,8 +174,11 @@ impl Patch {
     }
 
     pub(super) fn worth(&self) -> Worth {
-        let mut worth = Worth { excess: 0.0, worst: 0.0 };
-        for f in ratios(&self.mesh, &self.points) {
+        let mut worth = Worth { excess: 0.0, worst: 0.0, aspect: 1.0 };
+        for corners in triangles(&self.mesh, &self.points) {
+            let [a, b, c] = corners;
+            let f = inverse_mean_ratio(a, b, c);
+            worth.aspect = worth.aspect.max(aspect_of_poor(f, corners));
             worth.excess += f * f - 1.0 + BAD_WEIGHT * (f - BAD).max(0.0);
             worth.worst = worth.worst.max(f);
         }
@@ -329,11 +334,12 @@ impl Patch {
     }
 }
 
+fn triangles(mesh: &Triangulation, points: &[Point2]) -> impl Iterator<Item = [Point2; 3]> {
+    mesh.triangles().map(|t| mesh.corners(t).map(|v| points[v.index()]))
+}
+
 fn ratios(mesh: &Triangulation, points: &[Point2]) -> impl Iterator<Item = f64> {
-    mesh.triangles().map(|t| {
-        let [a, b, c] = mesh.corners(t).map(|v| points[v.index()]);
-        inverse_mean_ratio(a, b, c)
-    })
+    triangles(mesh, points).map(|[a, b, c]| inverse_mean_ratio(a, b, c))
 }
 
 /// What a triangle adds to the excess.
