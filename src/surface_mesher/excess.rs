@@ -1,41 +1,123 @@
-//! Where a mesh leaves its surface by more than was asked for, and the spacings that would mend it.
+//! Where a mesh leaves its surface by more than was asked for, and how that is mended: by spacings for
+//! another mesh, and by halving edges where that leaves a rest.
 //!
-//! Curvature says how far an equilateral triangle leaves the surface. Beside poles and where the
-//! curvature changes fast triangles leave it farther, so that the mesh is measured, and made again
-//! with a finer spacing where it is too coarse.
+//! Curvature says how far an equilateral triangle leaves the surface. Beside poles, where the
+//! curvature changes fast, and where triangles are not equilateral, they leave it farther.
 
+use super::chart::SurfaceChart;
+use super::defects::Cloth;
 use super::growth::Source;
 use super::patch::PatchMesh;
+use super::smooth::Smoother;
 use super::trim::descend;
+use super::flip;
+use crate::front::chart::{Chart, Site};
+use crate::point::Point2;
+use crate::predicates::{Sign, orient2d};
 use crate::surface::Surface;
+use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 use crate::vector::{Vector, add, distance, scale};
 
 /// A triangle that leaves the surface by the error allowed asks for this much less than its square
 /// root law says, so that a few rounds do.
 const SAFETY: f64 = 0.9;
+/// Rounds of halving.
+const ROUNDS: usize = 12;
+/// Of these, rounds that flip and smooth what was halved; the others only halve, which always helps.
+const ROUNDS_SMOOTHED: usize = 5;
+/// Edges are halved rather than the patch meshed again when at most this part of the triangles is too
+/// far away.
+const FEW: f64 = 0.03;
 
-/// Spacings for the triangles of a patch that are farther from it than `limit`; none is below `floor`.
-pub(super) fn excess(surface: &Surface, patch: &PatchMesh, limit: f64, floor: f64) -> Vec<Source> {
-    let mut sources = Vec::new();
-    for t in patch.mesh.triangles() {
-        let corners = patch.mesh.corners(t).map(|v| v.index());
-        let at = corners.map(|v| patch.lifts[v].point);
-        let uv = corners.map(|v| patch.parameters[v]);
-        let worst =
-            samples().map(|weights| deviation(surface, weights, at, uv)).fold(0.0, f64::max);
-        if worst > limit {
-            let longest = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| distance(at[i], at[j]));
-            let longest = longest.into_iter().fold(0.0, f64::max);
-            let spacing = (SAFETY * longest * (limit / worst).sqrt()).max(floor);
-            sources.push(Source { at: mean([1.0 / 3.0; 3], at), spacing });
-        }
-    }
-    sources
+/// How far a mesh may be from its surface.
+#[derive(Clone, Copy)]
+pub(super) struct Allowed<'a> {
+    pub(super) limit: f64,
+    /// No edge is asked for that is shorter than this.
+    pub(super) floor: f64,
+    /// Whether an edge of the outline, by its two nodes, stays as it is.
+    pub(super) is_kept: &'a (dyn Fn(usize, usize) -> bool + Sync),
 }
 
-/// The centre and the middles of the sides, as weights of the corners.
-fn samples() -> impl Iterator<Item = [f64; 3]> {
-    [[1.0 / 3.0; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].into_iter()
+/// What is too far away.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Excess {
+    /// Spacings for the triangles.
+    pub(super) sources: Vec<Source>,
+    /// How many edges of the outline are too far away.
+    pub(super) borders: usize,
+    /// How many triangles have been measured.
+    pub(super) measured: usize,
+}
+
+impl Excess {
+    pub(super) fn join(&mut self, other: Self) {
+        self.sources.extend(other.sources);
+        self.borders += other.borders;
+        self.measured += other.measured;
+    }
+
+    /// Whether halving some edges inside patches mends it.
+    pub(super) fn is_local(&self) -> bool {
+        self.borders == 0 && self.sources.len() as f64 <= FEW * self.measured as f64
+    }
+}
+
+/// Spacings for the triangles of a patch that are farther from it than allowed.
+pub(super) fn excess(surface: &Surface, patch: &PatchMesh, allowed: Allowed<'_>) -> Excess {
+    let mut excess = Excess::default();
+    let site = |v: usize| (patch.lifts[v].point, patch.parameters[v]);
+    for t in patch.mesh.triangles() {
+        excess.measured += 1;
+        let found = Measured::new(surface, &patch.mesh, t, site, allowed);
+        excess.borders += found.border.iter().filter(|&&off| off > allowed.limit).count();
+        if found.worst() > allowed.limit {
+            let at = patch.mesh.corners(t).map(|v| patch.lifts[v.index()].point);
+            let longest = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| distance(at[i], at[j]));
+            let longest = longest.into_iter().fold(0.0, f64::max);
+            let part = SAFETY * (allowed.limit / found.worst()).sqrt();
+            let spacing = (part * longest).max(allowed.floor);
+            excess.sources.push(Source { at: mean([1.0 / 3.0; 3], at), spacing });
+        }
+    }
+    excess
+}
+
+/// Distances of a triangle from the surface: at its centre and in the middles of its sides.
+struct Measured {
+    inside: f64,
+    /// Of the sides on the outline that may be cut anew.
+    border: [f64; 3],
+}
+
+impl Measured {
+    fn new(
+        surface: &Surface,
+        mesh: &Triangulation,
+        t: TriangleId,
+        site: impl Fn(usize) -> (Vector, [f64; 2]),
+        allowed: Allowed<'_>,
+    ) -> Self {
+        let corners = mesh.corners(t).map(|v| v.index());
+        let sites = corners.map(site);
+        let (at, uv) = (sites.map(|s| s.0), sites.map(|s| s.1));
+        let off = |weights: [f64; 3]| deviation(surface, weights, at, uv);
+        let mut found = Self { inside: off([1.0 / 3.0; 3]), border: [0.0; 3] };
+        for (i, e) in t.half_edges().into_iter().enumerate() {
+            let mut weights = [0.5; 3];
+            weights[(i + 2) % 3] = 0.0;
+            if mesh.twin(e).is_some() {
+                found.inside = found.inside.max(off(weights));
+            } else if !(allowed.is_kept)(corners[i], corners[(i + 1) % 3]) {
+                found.border[i] = off(weights);
+            }
+        }
+        found
+    }
+
+    fn worst(&self) -> f64 {
+        self.border.iter().copied().fold(self.inside, f64::max)
+    }
 }
 
 fn mean([r, s, t]: [f64; 3], [a, b, c]: [Vector; 3]) -> Vector {
@@ -49,4 +131,96 @@ fn deviation(surface: &Surface, weights: [f64; 3], at: [Vector; 3], uv: [[f64; 2
     let part = |i: usize| (0..3).map(|k| weights[k] * uv[k][i]).sum();
     let [u, v] = descend(surface, [part(0), part(1)], p);
     distance(surface.at(u, v), p)
+}
+
+/// Halves edges inside a patch until no triangle is farther from the surface than allowed; vertices
+/// below `fixed` do not move. Returns the number of edges halved.
+pub(super) fn halve(
+    chart: &SurfaceChart<'_>,
+    patch: &mut PatchMesh,
+    fixed: usize,
+    allowed: Allowed<'_>,
+) -> u64 {
+    let PatchMesh { mesh, lifts, parameters, .. } = patch;
+    let mut points: Vec<Point2> =
+        parameters.iter().map(|&[u, v]| chart.sheet.scaled(u, v)).collect();
+    let mut halved = 0;
+    for round in 0..ROUNDS {
+        let mut cloth = Cloth { mesh: &mut *mesh, points: &mut points, lifts: &mut *lifts };
+        let before = cloth.points.len();
+        let far = too_far(chart, &cloth, allowed);
+        for (corners, t) in far {
+            if cloth.mesh.is_live(t) && cloth.mesh.corners(t) == corners {
+                halve_longest(chart, &mut cloth, t, allowed.floor);
+            }
+        }
+        let count = cloth.points.len();
+        if count == before {
+            break;
+        }
+        halved += (count - before) as u64;
+        if round < ROUNDS_SMOOTHED {
+            flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
+            let mut star = Smoother::resting(chart, fixed, count);
+            star.wake(&(0..count).map(|v| v >= before).collect::<Vec<bool>>());
+            star.sweep(cloth.mesh, cloth.points, cloth.lifts);
+            flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
+        }
+    }
+    *parameters = points.iter().map(|&p| chart.sheet.parameters(p)).collect();
+    halved
+}
+
+/// The triangles that are too far from the surface.
+fn too_far(
+    chart: &SurfaceChart<'_>,
+    cloth: &Cloth<'_>,
+    allowed: Allowed<'_>,
+) -> Vec<([VertexId; 3], TriangleId)> {
+    let site = |v: usize| (cloth.lifts[v].point, chart.sheet.parameters(cloth.points[v]));
+    let surface = chart.sheet.surface;
+    let is_far = |t: &TriangleId| {
+        Measured::new(surface, cloth.mesh, *t, site, allowed).inside > allowed.limit
+    };
+    let far = cloth.mesh.triangles().filter(is_far);
+    far.map(|t| (cloth.mesh.corners(t), t)).collect()
+}
+
+/// Halves the longest side of a triangle that is no edge of the outline.
+fn halve_longest(chart: &SurfaceChart<'_>, cloth: &mut Cloth<'_>, t: TriangleId, floor: f64) {
+    let ends = |e: HalfEdgeId| [cloth.mesh.origin(e), cloth.mesh.dest(e)].map(|v| v.index());
+    let length = |e: HalfEdgeId| {
+        let [a, b] = ends(e).map(|v| cloth.lifts[v].point);
+        distance(a, b)
+    };
+    let mut sides: Vec<HalfEdgeId> =
+        t.half_edges().into_iter().filter(|&e| cloth.mesh.twin(e).is_some()).collect();
+    sides.sort_by(|&e, &f| length(f).total_cmp(&length(e)).then(e.cmp(&f)));
+    for e in sides.into_iter().filter(|&e| length(e) > 2.0 * floor) {
+        let [a, b] = ends(e).map(|v| Site { at: cloth.points[v], lift: cloth.lifts[v] });
+        let Some(middle) = middle(chart, [a, b]) else { continue };
+        let twin = cloth.mesh.twin(e).expect("a side inside");
+        let outer = [e.next(), e.prev(), twin.next(), twin.prev()];
+        let sees = |&h: &HalfEdgeId| {
+            let [p, q] = ends(h).map(|v| cloth.points[v]);
+            orient2d(p, q, middle.at) == Sign::Positive
+        };
+        if outer.iter().all(sees) {
+            let v = VertexId(cloth.points.len() as u32);
+            cloth.points.push(middle.at);
+            cloth.lifts.push(middle.lift);
+            cloth.mesh.split_edge(e, v);
+            return;
+        }
+    }
+}
+
+/// The place on the surface over the middle of an edge.
+fn middle(
+    chart: &SurfaceChart<'_>,
+    [a, b]: [Site<super::chart::Lift>; 2],
+) -> Option<Site<super::chart::Lift>> {
+    let frame = chart.frame([a, b])?;
+    let half = 0.5 * distance(a.lift.point, b.lift.point);
+    chart.place(&frame, Point2::new(half, 0.0))
 }

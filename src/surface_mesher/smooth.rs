@@ -30,6 +30,19 @@ impl<'a> Smoother<'a> {
         Self { chart, fixed, active: Vec::new(), link, link_vertices, flat }
     }
 
+    /// For a mesh of so many vertices that are all good where they are.
+    pub(super) fn resting(chart: &'a SurfaceChart<'a>, fixed: usize, count: usize) -> Self {
+        Self { active: vec![false; count], ..Self::new(chart, fixed) }
+    }
+
+    /// Looks again at the vertices that are marked.
+    pub(super) fn wake(&mut self, marked: &[bool]) {
+        self.active.resize(marked.len(), true);
+        for (active, &marked) in self.active.iter_mut().zip(marked) {
+            *active |= marked;
+        }
+    }
+
     /// One sweep over the active vertices in index order; returns the number of moves.
     pub(super) fn sweep(
         &mut self,
