@@ -242,7 +242,7 @@ pub fn mesh_model(
 }
 
 /// Times that a model is meshed at most, to keep the chord error asked for.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 
 /// Meshes a model with some more sources of spacing; gives the mesh, and the sources that it lacks:
 /// none where halving some edges has mended it, or in the last round.
@@ -285,9 +285,9 @@ fn mesh_once(
         patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
     }
     let mut excess = plan.excess(&patches, &rims);
-    if is_last || excess.is_local() {
+    if !excess.sources.is_empty() && (is_last || excess.is_local()) {
         plan.halve(&mut patches, &rims);
-        excess.sources.clear();
+        excess = plan.excess(&patches, &rims);
     }
     for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
@@ -301,7 +301,8 @@ fn mesh_once(
     }
     observer.stage(Stage::Collect);
     (meshed.mesh, meshed.parameters) = weld.finish(model, &plan.outline, &rims);
-    Ok((meshed, excess.sources))
+    let finer = if is_last { Vec::new() } else { excess.sources };
+    Ok((meshed, finer))
 }
 
 /// Patches that are meshed at the same time; between such groups the observer is asked whether to
@@ -439,11 +440,11 @@ impl Plan {
     /// Where the patches leave their surfaces too far.
     fn excess(&self, patches: &[PatchMesh], rims: &[Rim]) -> Excess {
         let Some(limit) = self.curvature.chord_error else { return Excess::default() };
-        let kept = self.outline.ruled_edges();
+        let kept = self.outline.ruled_vertices();
         let of = |(i, patch): (usize, &PatchMesh)| {
             let is_kept = is_kept(&kept, &rims[i]);
             let allowed = Allowed { limit, floor: self.curvature.floor, is_kept: &is_kept };
-            excess::excess(&self.outline.pieces[i].surface, patch, allowed)
+            excess::excess(&self.chart(i), patch, allowed)
         };
         let lists: Vec<Excess> = patches.par_iter().enumerate().map(of).collect();
         let mut all = Excess::default();
@@ -454,7 +455,7 @@ impl Plan {
     /// Halves edges where the patches leave their surfaces too far.
     fn halve(&self, patches: &mut [PatchMesh], rims: &[Rim]) {
         let Some(limit) = self.curvature.chord_error else { return };
-        let kept = self.outline.ruled_edges();
+        let kept = self.outline.ruled_vertices();
         patches.par_iter_mut().enumerate().for_each(|(i, patch)| {
             let is_kept = is_kept(&kept, &rims[i]);
             let allowed = Allowed { limit, floor: self.curvature.floor, is_kept: &is_kept };
@@ -493,12 +494,9 @@ impl Plan {
     }
 }
 
-/// Whether an edge of a patch's outline is one of a curve that the model says how to cut.
-fn is_kept<'a>(kept: &'a BTreeSet<[u32; 2]>, rim: &'a Rim) -> impl Fn(usize, usize) -> bool + Sync + 'a {
-    move |i, j| match (rim.nodes.get(i), rim.nodes.get(j)) {
-        (Some(a), Some(b)) => kept.contains(&[a.vertex.min(b.vertex), a.vertex.max(b.vertex)]),
-        _ => false,
-    }
+/// Whether a vertex of a patch is one of a curve that the model says how to cut.
+fn is_kept<'a>(kept: &'a BTreeSet<u32>, rim: &'a Rim) -> impl Fn(usize) -> bool + Sync + 'a {
+    move |v| rim.nodes.get(v).is_some_and(|node| kept.contains(&node.vertex))
 }
 
 /// The spacings that the curvature wants all over the patches.

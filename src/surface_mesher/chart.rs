@@ -22,6 +22,13 @@ pub(super) struct Lift {
     pub(super) normal: Vector,
 }
 
+impl Lift {
+    /// Whether the map is singular there.
+    pub(super) fn is_pole(&self) -> bool {
+        self.normal == [0.0; 3]
+    }
+}
+
 /// A patch with its scaled parameters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheet<'a> {

@@ -47,6 +47,8 @@ pub(super) struct Defects<'a> {
     /// And in any batch.
     pub(super) unsettled: Vec<bool>,
     pub(super) tried: u64,
+    /// No more changes are tried than these: with and without bad triangles around.
+    budgets: [u64; 2],
     /// Changes of topology that were kept.
     pub(super) changes: u64,
 }
@@ -88,24 +90,28 @@ impl<'a> Defects<'a> {
             changed: vec![false; count],
             unsettled: vec![false; count],
             tried: 0,
+            budgets: budgets(cloth.mesh.live_count() as u64, options.tries_max),
             changes: 0,
         }
     }
 
-    /// One pass over the irregular vertices and those with bad triangles, worst first; ends before
-    /// more than `budget` changes have been tried in all, and returns the number of changes kept.
-    pub(super) fn pass(&mut self, cloth: &mut Cloth<'_>, budget: u64) -> u64 {
+    /// One pass over the irregular vertices and those with bad triangles, worst first; whether another
+    /// one may find more: the budgets are not spent, and something has changed.
+    pub(super) fn pass(&mut self, cloth: &mut Cloth<'_>) -> bool {
         let before = self.changes;
         for batch in self.worst_first(cloth).chunks(BATCH) {
-            if !self.batch(cloth, batch, budget) {
-                break;
+            let is_bad = batch[0].0 > BAD;
+            let budget = self.budgets[usize::from(is_bad)];
+            let batch: Vec<VertexId> = batch.iter().map(|entry| entry.1).collect();
+            if !self.batch(cloth, &batch, budget) {
+                return false;
             }
         }
-        self.changes - before
+        self.changes > before
     }
 
-    /// Active vertices worth trying, by the worst triangle around them, then by index.
-    fn worst_first(&self, cloth: &Cloth<'_>) -> Vec<VertexId> {
+    /// Active vertices worth trying with the worst triangle around them, worst first, then by index.
+    fn worst_first(&self, cloth: &Cloth<'_>) -> Vec<(f64, VertexId)> {
         let mut around = vec![(0_u32, 1.0_f64); cloth.points.len()];
         for t in cloth.mesh.triangles() {
             let corners = cloth.mesh.corners(t).map(|v| v.index());
@@ -114,13 +120,14 @@ impl<'a> Defects<'a> {
                 around[v] = (around[v].0 + 1, around[v].1.max(ratio));
             }
         }
-        let is_defect = |v: &usize| {
-            let (degree, worst) = around[*v];
-            self.active[*v] && degree > 0 && (degree != REGULAR || worst > BAD)
+        let defect = |v: usize| {
+            let (degree, worst) = around[v];
+            let is_one = degree > 0 && (degree != REGULAR || worst > BAD);
+            (self.active[v] && is_one).then_some((worst, VertexId(v as u32)))
         };
-        let mut found: Vec<usize> = (self.fixed..cloth.points.len()).filter(is_defect).collect();
-        found.sort_by(|&s, &t| around[t].1.total_cmp(&around[s].1).then(s.cmp(&t)));
-        found.into_iter().map(|v| VertexId(v as u32)).collect()
+        let mut found: Vec<_> = (self.fixed..cloth.points.len()).filter_map(defect).collect();
+        found.sort_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
+        found
     }
 
     /// Searches around some vertices at once and keeps what is found, in their order; `false` when
@@ -208,6 +215,16 @@ impl<'a> Defects<'a> {
     }
 }
 
+/// How many changes are tried in a mesh of so many triangles: around vertices that are only irregular,
+/// and around those with bad triangles too.
+///
+/// A try costs as much as some five triangles. A large mesh has many irregular vertices with nearly
+/// equilateral triangles around them, and is hardly better without them.
+fn budgets(triangles: u64, most: u64) -> [u64; 2] {
+    let irregular = 4000_u64.saturating_sub(triangles) + triangles / 200;
+    [irregular, irregular + 1000 + triangles / 5].map(|budget| budget.min(most))
+}
+
 impl View<'_> {
     /// Searches around a vertex; a success in the plane counts if it is one on the surface.
     fn look(&self, searcher: &mut Searcher, v: VertexId) -> Found {
@@ -228,8 +245,7 @@ impl View<'_> {
         if e == NOWHERE {
             return None;
         }
-        let [here, there] =
-            [v, self.search.mesh.dest(e)].map(|v| self.lifts[v.index()].point);
+        let [here, there] = [v, self.search.mesh.dest(e)].map(|v| self.lifts[v.index()].point);
         self.chart.frame_at(self.points[v.index()], distance(here, there))
     }
 

@@ -10,7 +10,6 @@ use super::growth::Source;
 use super::patch::PatchMesh;
 use super::smooth::Smoother;
 use super::trim::descend;
-use super::flip;
 use crate::front::chart::{Chart, Site};
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
@@ -22,12 +21,15 @@ use crate::vector::{Vector, add, distance, scale};
 /// root law says, so that a few rounds do.
 const SAFETY: f64 = 0.9;
 /// Rounds of halving.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 8;
 /// Of these, rounds that flip and smooth what was halved; the others only halve, which always helps.
 const ROUNDS_SMOOTHED: usize = 5;
 /// Edges are halved rather than the patch meshed again when at most this part of the triangles is too
 /// far away.
 const FEW: f64 = 0.03;
+
+/// A side of this part of the longest one is halved in its place.
+const NOT_MUCH_SHORTER: f64 = 0.7;
 
 /// How far a mesh may be from its surface.
 #[derive(Clone, Copy)]
@@ -35,8 +37,8 @@ pub(super) struct Allowed<'a> {
     pub(super) limit: f64,
     /// No edge is asked for that is shorter than this.
     pub(super) floor: f64,
-    /// Whether an edge of the outline, by its two nodes, stays as it is.
-    pub(super) is_kept: &'a (dyn Fn(usize, usize) -> bool + Sync),
+    /// Whether a vertex is a node of a curve that is cut as the model says.
+    pub(super) is_kept: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
 /// What is too far away.
@@ -44,7 +46,7 @@ pub(super) struct Allowed<'a> {
 pub(super) struct Excess {
     /// Spacings for the triangles.
     pub(super) sources: Vec<Source>,
-    /// How many edges of the outline are too far away.
+    /// How many triangles cannot be mended by halving edges: those on the outline and at poles.
     pub(super) borders: usize,
     /// How many triangles have been measured.
     pub(super) measured: usize,
@@ -64,20 +66,30 @@ impl Excess {
 }
 
 /// Spacings for the triangles of a patch that are farther from it than allowed.
-pub(super) fn excess(surface: &Surface, patch: &PatchMesh, allowed: Allowed<'_>) -> Excess {
+pub(super) fn excess(chart: &SurfaceChart<'_>, patch: &PatchMesh, allowed: Allowed<'_>) -> Excess {
+    let surface = chart.sheet.surface;
     let mut excess = Excess::default();
     let site = |v: usize| (patch.lifts[v].point, patch.parameters[v]);
     for t in patch.mesh.triangles() {
         excess.measured += 1;
         let found = Measured::new(surface, &patch.mesh, t, site, allowed);
-        excess.borders += found.border.iter().filter(|&&off| off > allowed.limit).count();
         if found.worst() > allowed.limit {
             let at = patch.mesh.corners(t).map(|v| patch.lifts[v.index()].point);
-            let longest = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| distance(at[i], at[j]));
-            let longest = longest.into_iter().fold(0.0, f64::max);
+            let (side, longest) = longest(at);
+            let on_border = patch.mesh.twin(t.half_edge(side as u32)).is_none();
+            let at_pole = patch.mesh.corners(t).iter().any(|v| patch.lifts[v.index()].is_pole());
+            let is_far = found.border.iter().any(|&off| off > allowed.limit);
+            excess.borders += usize::from(on_border || at_pole || is_far);
             let part = SAFETY * (allowed.limit / found.worst()).sqrt();
-            let spacing = (part * longest).max(allowed.floor);
-            excess.sources.push(Source { at: mean([1.0 / 3.0; 3], at), spacing });
+            let centre = mean([1.0 / 3.0; 3], at);
+            // Triangles may be larger than the field wants them: then it has to want less than it does.
+            let [u, v] = [0, 1].map(|i| {
+                patch.mesh.corners(t).iter().map(|w| patch.parameters[w.index()][i]).sum::<f64>()
+                    / 3.0
+            });
+            let wanted = chart.spacing_at(chart.sheet.scaled(u, v), centre);
+            let spacing = (part * longest.min(wanted)).max(allowed.floor);
+            excess.sources.push(Source { at: centre, spacing });
         }
     }
     excess
@@ -101,15 +113,22 @@ impl Measured {
         let corners = mesh.corners(t).map(|v| v.index());
         let sites = corners.map(site);
         let (at, uv) = (sites.map(|s| s.0), sites.map(|s| s.1));
-        let off = |weights: [f64; 3]| deviation(surface, weights, at, uv);
+        if at[0] == at[1] || at[1] == at[2] || at[2] == at[0] {
+            // At a pole: it will be left out.
+            return Self { inside: 0.0, border: [0.0; 3] };
+        }
+        if corners.iter().any(|&v| (allowed.is_kept)(v)) {
+            // It is as large as the model asks for.
+            return Self { inside: 0.0, border: [0.0; 3] };
+        }
+        let off = |weights: [f64; 3]| deviation(surface, weights, (at, uv), allowed.limit);
         let mut found = Self { inside: off([1.0 / 3.0; 3]), border: [0.0; 3] };
         for (i, e) in t.half_edges().into_iter().enumerate() {
             let mut weights = [0.5; 3];
             weights[(i + 2) % 3] = 0.0;
-            if mesh.twin(e).is_some() {
-                found.inside = found.inside.max(off(weights));
-            } else if !(allowed.is_kept)(corners[i], corners[(i + 1) % 3]) {
-                found.border[i] = off(weights);
+            match mesh.twin(e) {
+                Some(_) => found.inside = found.inside.max(off(weights)),
+                None => found.border[i] = off(weights),
             }
         }
         found
@@ -120,17 +139,38 @@ impl Measured {
     }
 }
 
+/// The longest side of a triangle, and its length.
+fn longest(at: [Vector; 3]) -> (usize, f64) {
+    let lengths = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| distance(at[i], at[j]));
+    let mut side = 0;
+    for i in 1..3 {
+        if lengths[i] > lengths[side] {
+            side = i;
+        }
+    }
+    (side, lengths[side])
+}
+
 fn mean([r, s, t]: [f64; 3], [a, b, c]: [Vector; 3]) -> Vector {
     add(scale(r, a), add(scale(s, b), scale(t, c)))
 }
 
 /// Distance of a point of a triangle from the surface, whose nearest point is searched for from the
-/// same mean of the parameters.
-fn deviation(surface: &Surface, weights: [f64; 3], at: [Vector; 3], uv: [[f64; 2]; 3]) -> f64 {
+/// same mean of the parameters; where that is no good, as beside poles, from the corners too.
+fn deviation(
+    surface: &Surface,
+    weights: [f64; 3],
+    (at, uv): ([Vector; 3], [[f64; 2]; 3]),
+    limit: f64,
+) -> f64 {
     let p = mean(weights, at);
     let part = |i: usize| (0..3).map(|k| weights[k] * uv[k][i]).sum();
-    let [u, v] = descend(surface, [part(0), part(1)], p);
-    distance(surface.at(u, v), p)
+    let off = |from: [f64; 2]| {
+        let [u, v] = descend(surface, from, p);
+        distance(surface.at(u, v), p)
+    };
+    let found = off([part(0), part(1)]);
+    if found <= limit { found } else { uv.into_iter().map(off).fold(found, f64::min) }
 }
 
 /// Halves edges inside a patch until no triangle is farther from the surface than allowed; vertices
@@ -160,11 +200,9 @@ pub(super) fn halve(
         }
         halved += (count - before) as u64;
         if round < ROUNDS_SMOOTHED {
-            flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
             let mut star = Smoother::resting(chart, fixed, count);
-            star.wake(&(0..count).map(|v| v >= before).collect::<Vec<bool>>());
-            star.sweep(cloth.mesh, cloth.points, cloth.lifts);
-            flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
+            star.wake(&cloth, |v| v >= before);
+            star.settle(&mut cloth, 2);
         }
     }
     *parameters = points.iter().map(|&p| chart.sheet.parameters(p)).collect();
@@ -186,20 +224,22 @@ fn too_far(
     far.map(|t| (cloth.mesh.corners(t), t)).collect()
 }
 
-/// Halves the longest side of a triangle that is no edge of the outline.
+/// Halves the longest side of a triangle: no angle is then less than half of the smallest before
+/// (Rosenberg and Stenger, 1975). Where that is an edge of the outline, the next one, if it is not
+/// much shorter.
 fn halve_longest(chart: &SurfaceChart<'_>, cloth: &mut Cloth<'_>, t: TriangleId, floor: f64) {
     let ends = |e: HalfEdgeId| [cloth.mesh.origin(e), cloth.mesh.dest(e)].map(|v| v.index());
     let length = |e: HalfEdgeId| {
         let [a, b] = ends(e).map(|v| cloth.lifts[v].point);
         distance(a, b)
     };
-    let mut sides: Vec<HalfEdgeId> =
-        t.half_edges().into_iter().filter(|&e| cloth.mesh.twin(e).is_some()).collect();
-    sides.sort_by(|&e, &f| length(f).total_cmp(&length(e)).then(e.cmp(&f)));
-    for e in sides.into_iter().filter(|&e| length(e) > 2.0 * floor) {
+    let mut sides = t.half_edges().map(|e| (length(e), e));
+    sides.sort_by(|s, t| t.0.total_cmp(&s.0));
+    let least = (NOT_MUCH_SHORTER * sides[0].0).max(2.0 * floor);
+    let sides = sides.into_iter().filter(|(length, _)| *length > least);
+    for (e, twin) in sides.filter_map(|(_, e)| Some((e, cloth.mesh.twin(e)?))) {
         let [a, b] = ends(e).map(|v| Site { at: cloth.points[v], lift: cloth.lifts[v] });
         let Some(middle) = middle(chart, [a, b]) else { continue };
-        let twin = cloth.mesh.twin(e).expect("a side inside");
         let outer = [e.next(), e.prev(), twin.next(), twin.prev()];
         let sees = |&h: &HalfEdgeId| {
             let [p, q] = ends(h).map(|v| cloth.points[v]);

@@ -29,13 +29,18 @@ pub(super) fn towards_circles(mesh: &mut Triangulation, points: &[Point2], lifts
     }
 }
 
-/// Flips an edge when that makes the worse of its two triangles better in space, until no flip does;
-/// returns the number of flips.
+/// Flips an edge of a triangle at a marked vertex when that makes the worse of its two triangles better
+/// in space, until no flip does; returns the number of flips.
 ///
 /// Ends: the shape of a triangle depends on its corners alone, and each flip raises the list of all
 /// shapes, sorted upwards, in lexicographic order.
-pub(super) fn towards_shape(mesh: &mut Triangulation, points: &[Point2], lifts: &[Lift]) -> u64 {
-    let mut suspects = edges_of_bad(mesh, lifts);
+pub(super) fn towards_shape(
+    mesh: &mut Triangulation,
+    points: &[Point2],
+    lifts: &[Lift],
+    marked: &[bool],
+) -> u64 {
+    let mut suspects = edges_of_bad(mesh, lifts, marked);
     let mut flips = 0;
     while let Some(e) = suspects.pop() {
         let Some(vertices) = around(mesh, e) else { continue };
@@ -66,17 +71,15 @@ fn all_edges(mesh: &Triangulation) -> Vec<HalfEdgeId> {
 /// flip of an edge between two such triangles of a plane makes one with an obtuse angle.
 const ACUTE: f64 = 0.867;
 
-/// The edges of triangles that a flip may make better.
-fn edges_of_bad(mesh: &Triangulation, lifts: &[Lift]) -> Vec<HalfEdgeId> {
-    let is_bad = |t: TriangleId| shape(mesh.corners(t).map(|v| &lifts[v.index()])) < ACUTE;
-    let mut bad = vec![false; mesh.slot_count()];
-    mesh.triangles().for_each(|t| bad[t.index()] = is_bad(t));
-    let mut edges = all_edges(mesh);
-    let is_at_bad = |e: &HalfEdgeId| {
-        let twin = mesh.twin(*e).expect("only edges with two sides are flipped");
-        bad[e.triangle().index()] || bad[twin.triangle().index()]
+/// The edges of triangles at marked vertices that a flip may make better.
+fn edges_of_bad(mesh: &Triangulation, lifts: &[Lift], marked: &[bool]) -> Vec<HalfEdgeId> {
+    let is_bad = |t: TriangleId| {
+        let corners = mesh.corners(t).map(|v| v.index());
+        corners.iter().any(|&v| marked[v]) && shape(corners.map(|v| &lifts[v])) < ACUTE
     };
-    edges.retain(is_at_bad);
+    let mut edges: Vec<HalfEdgeId> =
+        mesh.triangles().filter(|&t| is_bad(t)).flat_map(TriangleId::half_edges).collect();
+    edges.reverse();
     edges
 }
 

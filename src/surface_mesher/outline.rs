@@ -314,11 +314,10 @@ impl Outline {
         Some(if is_forward(side) { [first, last] } else { [last, first] })
     }
 
-    /// Edges of curves that are cut as the model says, by their lower and upper vertex.
-    pub(super) fn ruled_edges(&self) -> BTreeSet<[u32; 2]> {
+    /// Vertices of curves that are cut as the model says.
+    pub(super) fn ruled_vertices(&self) -> BTreeSet<u32> {
         let ruled = self.curves.iter().filter(|shared| shared.has_rule);
-        let pairs = ruled.flat_map(|shared| shared.vertices.windows(2));
-        pairs.map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect()
+        ruled.flat_map(|shared| shared.vertices.iter().copied()).collect()
     }
 
     fn cut_end(&self, cut: &Cut, at_start: bool) -> u32 {
@@ -412,7 +411,15 @@ impl Outline {
 impl Shared {
     fn new(curve: Line, name: &str) -> Self {
         let (nodes, vertices) = (Vec::new(), Vec::new());
-        Self { curve, name: name.to_owned(), nodes, vertices, marker: None, has_rule: false, uses: 0 }
+        Self {
+            curve,
+            name: name.to_owned(),
+            nodes,
+            vertices,
+            marker: None,
+            has_rule: false,
+            uses: 0,
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::chart::{Lift, SurfaceChart};
 use super::defects::{Cloth, Defects};
 use super::outline::{Node, Rim};
-use super::{SurfaceMeshError, flip, smooth};
+use super::smooth::Smoother;
+use super::{SurfaceMeshError, flip};
 use crate::background::{Background, OUTSIDE};
 use crate::domain::validate::{Plc, PlcInside, PlcSegment};
 use crate::front::{FrontMesh, FrontOptions, FrontStats, Start};
@@ -117,10 +118,6 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Changes of topology that are tried for each thousand triangles, and at least.
-const TRIES_PER_THOUSAND: u64 = 200;
-const TRIES_AT_LEAST: u64 = 8000;
-
 /// Flips and smooths, and changes the topology where the lattice has defects; returns the numbers of
 /// flips and moves.
 fn improve(
@@ -129,41 +126,23 @@ fn improve(
     fixed: usize,
     options: ImproveOptions,
 ) -> [u64; 2] {
-    let mut star = smooth::Smoother::new(chart, fixed);
-    let mut done = settle(&mut star, &mut cloth, options.sweeps);
+    let mut star = Smoother::new(chart, fixed, cloth.points.len());
+    let done = star.settle(&mut cloth, options.sweeps);
     if options.passes == 0 || options.depth == 0 {
         return done;
     }
-    let share = TRIES_AT_LEAST + TRIES_PER_THOUSAND * cloth.mesh.live_count() as u64 / 1000;
-    let budget = options.tries_max.min(share);
     let mut defects = Defects::new(chart, &cloth, fixed, options);
     for _ in 0..options.passes {
-        if defects.pass(&mut cloth, budget) == 0 {
+        if !defects.pass(&mut cloth) {
             break;
         }
     }
-    if std::env::var("DEFECTS").is_ok() { eprintln!("defects: {} {}", defects.changes, defects.tried); }
-    if defects.changes > 0 {
-        star.wake(&defects.unsettled);
-        let more = settle(&mut star, &mut cloth, options.sweeps);
-        done = [done[0] + more[0], done[1] + more[1]];
+    if defects.changes == 0 {
+        return done;
     }
-    done
-}
-
-/// Sweeps of smoothing and flips; returns the numbers of flips and moves.
-fn settle(star: &mut smooth::Smoother<'_>, cloth: &mut Cloth<'_>, sweeps: u32) -> [u64; 2] {
-    let (mut flips, mut moves) = (0, 0);
-    for _ in 0..sweeps {
-        flips += flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
-        let moved = star.sweep(cloth.mesh, cloth.points, cloth.lifts);
-        moves += moved;
-        if moved == 0 {
-            break;
-        }
-    }
-    flips += flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts);
-    [flips, moves]
+    star.wake(&cloth, |v| defects.unsettled[v]);
+    let more = star.settle(&mut cloth, options.sweeps);
+    [done[0] + more[0], done[1] + more[1]]
 }
 
 /// The half-edge of each border edge, by its number: flips move them.
