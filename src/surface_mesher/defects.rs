@@ -46,7 +46,7 @@ pub(super) struct Defects<'a> {
     changed: Vec<bool>,
     /// And in any batch.
     pub(super) unsettled: Vec<bool>,
-    pub(super) tried: u64,
+    tried: u64,
     /// No more changes are tried than these: with and without bad triangles around.
     budgets: [u64; 2],
     /// Changes of topology that were kept.
