@@ -135,9 +135,9 @@ impl Tensor {
                     sum.add(parts[s], &control);
                 }
             }
-            for i in 0..N {
-                for j in 0..N - i {
-                    sums[i][j].add(u.rows[i][r], &row[j]);
+            for (i, (line, parts)) in sums.iter_mut().zip(&u.rows).enumerate() {
+                for (sum, along_v) in line[..N - i].iter_mut().zip(&row) {
+                    sum.add(parts[r], along_v);
                 }
             }
         }

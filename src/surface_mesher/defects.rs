@@ -84,7 +84,7 @@ impl<'a> Defects<'a> {
         Self {
             chart,
             fixed,
-            effort: Effort { rings: options.rings, depth: options.depth },
+            effort: Effort { rings: options.rings, depth: options.depth, breadth: options.breadth },
             outgoing,
             active: vec![true; count],
             changed: vec![false; count],
