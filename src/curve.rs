@@ -8,7 +8,7 @@ mod arc;
 pub mod basis;
 pub mod discretize;
 
-use crate::vector::{Vector, add, key, scale, sub};
+use crate::vector::{Vector, add, along, key, scale, sub};
 use basis::{Basis, DEGREE_MAX};
 
 /// A curve.
@@ -237,8 +237,8 @@ impl Curve {
     pub fn at(&self, t: f64) -> Vector {
         let [start, end] = self.domain();
         let t = if self.closed && t >= end { start } else { t.clamp(start, end) };
-        let basis = Basis::at(&self.knots, self.degree, self.points.len(), t, 0);
-        if let Some(i) = basis.value[..=self.degree].iter().position(|&n| n == 1.0) {
+        let basis = self.basis::<1>(t);
+        if let Some(i) = basis.rows[0][..=self.degree].iter().position(|&n| n == 1.0) {
             // No weight may disturb a point that is a control point.
             return self.points[basis.first + i];
         }
@@ -250,7 +250,22 @@ impl Curve {
     pub fn jet(&self, t: f64) -> CurveJet {
         let [start, end] = self.domain();
         let t = t.clamp(start, end);
-        self.sums(&Basis::at(&self.knots, self.degree, self.points.len(), t, 2)).jet()
+        self.sums(&self.basis::<3>(t)).jet()
+    }
+
+    /// The point at parameter `t` and the first derivative, from the right where it jumps: the same
+    /// as those of [`jet`](Self::jet), sooner.
+    #[must_use]
+    pub fn tangent(&self, t: f64) -> [Vector; 2] {
+        let [start, end] = self.domain();
+        let sums = self.sums(&self.basis::<2>(t.clamp(start, end)));
+        let point = sums.point();
+        [point, sums.first(point)]
+    }
+
+    #[inline]
+    fn basis<const N: usize>(&self, t: f64) -> Basis<N> {
+        Basis::at(&self.knots, self.degree, self.points.len(), t)
     }
 
     /// The parameters where the curve may have a corner: inner knots repeated `degree` times.
@@ -333,37 +348,46 @@ impl Curve {
         piece
     }
 
-    fn sums(&self, basis: &Basis) -> Sums {
-        let mut sums = Sums::default();
+    #[inline]
+    fn sums<const N: usize>(&self, basis: &Basis<N>) -> Sums<N> {
+        let mut sums = Sums { points: [[0.0; 3]; N], weights: [0.0; N] };
         for r in 0..=self.degree {
             let (point, weight) = (self.points[basis.first + r], self.weight(basis.first + r));
-            let parts = [basis.value[r], basis.slope[r], basis.bend[r]];
-            for (order, part) in parts.into_iter().enumerate() {
-                sums.points[order] = add(sums.points[order], scale(part * weight, point));
-                sums.weights[order] += part * weight;
+            for order in 0..N {
+                let part = basis.rows[order][r] * weight;
+                sums.points[order] = along(sums.points[order], part, point);
+                sums.weights[order] += part;
             }
         }
         sums
     }
 }
 
-/// Weighted sums of control points, and of the weights alone, for three orders of derivatives.
-#[derive(Default)]
-struct Sums {
-    points: [Vector; 3],
-    weights: [f64; 3],
+/// Weighted sums of control points, and of the weights alone, for N orders of derivatives.
+struct Sums<const N: usize> {
+    points: [Vector; N],
+    weights: [f64; N],
 }
 
-impl Sums {
+impl<const N: usize> Sums<N> {
+    #[inline]
     fn point(&self) -> Vector {
         scale(1.0 / self.weights[0], self.points[0])
     }
 
     /// The quotient rule.
+    #[inline]
+    fn first(&self, point: Vector) -> Vector {
+        scale(1.0 / self.weights[0], sub(self.points[1], scale(self.weights[1], point)))
+    }
+}
+
+impl Sums<3> {
+    /// The quotient rule, once more.
     fn jet(&self) -> CurveJet {
         let [w, dw, ddw] = self.weights;
         let point = self.point();
-        let first = scale(1.0 / w, sub(self.points[1], scale(dw, point)));
+        let first = self.first(point);
         let rest = add(scale(2.0 * dw, first), scale(ddw, point));
         CurveJet { point, first, second: scale(1.0 / w, sub(self.points[2], rest)) }
     }

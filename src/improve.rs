@@ -15,9 +15,10 @@ mod places;
 mod smooth;
 mod split;
 
-use attempt::Effort;
+pub(crate) use attempt::{Attempt, Effort, GAIN_MIN, Search, Searcher};
 use defects::Defects;
 pub use flip::flip_to_delaunay;
+pub(crate) use patch::{Origin, Patch, Worth};
 use smooth::{Sheet, Smoother};
 pub use split::{SplitOptions, split_long_edges};
 

@@ -159,8 +159,8 @@ impl Surface {
     pub fn at(&self, u: f64, v: f64) -> Vector {
         match self {
             Self::Tensor(surface) => surface.at(u, v),
-            Self::Coons(surface) => surface.jet(u, v).tangents.point,
-            Self::Revolution(surface) => surface.jet(u, v).tangents.point,
+            Self::Coons(surface) => surface.tangents(u, v).point,
+            Self::Revolution(surface) => surface.tangents(u, v).point,
         }
     }
 
@@ -169,8 +169,8 @@ impl Surface {
     pub fn tangents(&self, u: f64, v: f64) -> Tangents {
         match self {
             Self::Tensor(surface) => surface.tangents(u, v),
-            Self::Coons(surface) => surface.jet(u, v).tangents,
-            Self::Revolution(surface) => surface.jet(u, v).tangents,
+            Self::Coons(surface) => surface.tangents(u, v),
+            Self::Revolution(surface) => surface.tangents(u, v),
         }
     }
 

@@ -11,6 +11,7 @@
 #![doc = include_str!("../docs/pictures/surface.svg")]
 
 mod chart;
+mod defects;
 mod direct;
 mod excess;
 mod flip;
@@ -32,12 +33,14 @@ use crate::size::Prediction;
 use crate::structured::{GridMethod, GridStats};
 use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
+use excess::{Allowed, Excess};
 use growth::{Source, SpaceField};
 use lift::Weld;
 use outline::{Outline, ROUNDING, Rim};
 use patch::{Draft, PatchMesh};
 use rayon::prelude::*;
 use sizing::Curvature;
+use std::collections::BTreeSet;
 use structured::Quarters;
 
 pub use structured::PatchGridError;
@@ -227,24 +230,26 @@ pub fn mesh_model(
 ) -> Result<SurfaceMeshed, SurfaceMeshError> {
     options.check()?;
     let mut finer = Vec::new();
-    for _ in 1..ROUNDS {
-        let (meshed, excess) = mesh_once(model, options, &finer, observer)?;
+    let mut round = 1;
+    loop {
+        let (meshed, excess) = mesh_once(model, options, (&finer, round == ROUNDS), observer)?;
         if excess.is_empty() {
             return Ok(meshed);
         }
         finer.extend(excess);
+        round += 1;
     }
-    Ok(mesh_once(model, options, &finer, observer)?.0)
 }
 
 /// Times that a model is meshed at most, to keep the chord error asked for.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 
-/// Meshes a model with some more sources of spacing; gives the mesh, and the sources that it lacks.
+/// Meshes a model with some more sources of spacing; gives the mesh, and the sources that it lacks:
+/// none where halving some edges has mended it, or in the last round.
 fn mesh_once(
     model: &Model,
     options: &SurfaceOptions,
-    finer: &[Source],
+    (finer, is_last): (&[Source], bool),
     observer: &mut dyn Observer,
 ) -> Result<(SurfaceMeshed, Vec<Source>), SurfaceMeshError> {
     observer.stage(Stage::Background);
@@ -279,7 +284,11 @@ fn mesh_once(
             patches.iter().map(|patch: &PatchMesh| patch.mesh.triangles().count()).sum();
         patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
     }
-    let excess = plan.excess(&patches);
+    let mut excess = plan.excess(&patches, &rims);
+    if !excess.sources.is_empty() && (is_last || excess.is_local()) {
+        plan.halve(&mut patches, &rims);
+        excess = plan.excess(&patches, &rims);
+    }
     for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
         meshed.front.accepted_existing += patch.stats.accepted_existing;
@@ -292,7 +301,8 @@ fn mesh_once(
     }
     observer.stage(Stage::Collect);
     (meshed.mesh, meshed.parameters) = weld.finish(model, &plan.outline, &rims);
-    Ok((meshed, excess))
+    let finer = if is_last { Vec::new() } else { excess.sources };
+    Ok((meshed, finer))
 }
 
 /// Patches that are meshed at the same time; between such groups the observer is asked whether to
@@ -428,14 +438,29 @@ impl Plan {
     }
 
     /// Where the patches leave their surfaces too far.
-    fn excess(&self, patches: &[PatchMesh]) -> Vec<Source> {
-        let Some(limit) = self.curvature.chord_error else { return Vec::new() };
-        let floor = self.curvature.floor;
+    fn excess(&self, patches: &[PatchMesh], rims: &[Rim]) -> Excess {
+        let Some(limit) = self.curvature.chord_error else { return Excess::default() };
+        let kept = self.outline.ruled_vertices();
         let of = |(i, patch): (usize, &PatchMesh)| {
-            excess::excess(&self.outline.pieces[i].surface, patch, limit, floor)
+            let is_kept = is_kept(&kept, &rims[i]);
+            let allowed = Allowed { limit, floor: self.curvature.floor, is_kept: &is_kept };
+            excess::excess(&self.chart(i), patch, allowed)
         };
-        let lists: Vec<Vec<Source>> = patches.par_iter().enumerate().map(of).collect();
-        lists.concat()
+        let lists: Vec<Excess> = patches.par_iter().enumerate().map(of).collect();
+        let mut all = Excess::default();
+        lists.into_iter().for_each(|excess| all.join(excess));
+        all
+    }
+
+    /// Halves edges where the patches leave their surfaces too far.
+    fn halve(&self, patches: &mut [PatchMesh], rims: &[Rim]) {
+        let Some(limit) = self.curvature.chord_error else { return };
+        let kept = self.outline.ruled_vertices();
+        patches.par_iter_mut().enumerate().for_each(|(i, patch)| {
+            let is_kept = is_kept(&kept, &rims[i]);
+            let allowed = Allowed { limit, floor: self.curvature.floor, is_kept: &is_kept };
+            excess::halve(&self.chart(i), patch, rims[i].nodes.len(), allowed);
+        });
     }
 
     fn rims(&self, model: &Model) -> Result<Vec<Rim>, SurfaceMeshError> {
@@ -467,6 +492,11 @@ impl Plan {
         };
         rims.iter().enumerate().map(draft).collect()
     }
+}
+
+/// Whether a vertex of a patch is one of a curve that the model says how to cut.
+fn is_kept<'a>(kept: &'a BTreeSet<u32>, rim: &'a Rim) -> impl Fn(usize) -> bool + Sync + 'a {
+    move |v| rim.nodes.get(v).is_some_and(|node| kept.contains(&node.vertex))
 }
 
 /// The spacings that the curvature wants all over the patches.

@@ -8,7 +8,8 @@
 For each shape: triangles, R/2r in space (mean, 99 %, max), folded edges (neighbours whose normals
 differ by more than 90 degrees), and triangles per second of processor time of one thread: of Gmsh
 for `generate` alone, of trigrade for the whole program, reading and writing included. Gmsh is asked
-for curves and surfaces of its own that have the same shape, with one spacing everywhere.
+for curves and surfaces of its own that have the same shape, with one spacing everywhere; on the last
+shape the boundary alone says how large triangles are.
 """
 import json
 import pathlib
@@ -110,12 +111,38 @@ def coons():
     gmsh.model.geo.synchronize()
 
 
+GRADED_CORNERS = [(0, 0, 0), (3, 0, 0), (3, 3, 1), (0, 3, 0)]
+GRADED_ENDS = (0.0005, 0.47)
+
+
+def graded_model():
+    """A bilinear patch whose boundary edges grow from 0.0005 to 0.47, 940 to 1."""
+    names = ["south", "east", "north", "west"]
+    sw, se, ne, nw = (list(p) for p in GRADED_CORNERS)
+    curves = []
+    for name, points in zip(names, [[sw, se], [se, ne], [nw, ne], [sw, nw]]):
+        low = GRADED_ENDS[0] if name in ("south", "west") else GRADED_ENDS[1]
+        curves.append({"name": name, "kind": "polyline", "points": points, "graded": [low, GRADED_ENDS[1]]})
+    sides = {name: name for name in names}
+    return {"curves": curves, "patches": [{"kind": "coons", "sides": sides}]}
+
+
+def graded():
+    """The same boundary nodes' spacings for Gmsh: sizes at the corners, none but the boundary's inside."""
+    sizes = [GRADED_ENDS[0]] + 3 * [GRADED_ENDS[1]]
+    tags = [gmsh.model.geo.addPoint(*p, size) for p, size in zip(GRADED_CORNERS, sizes)]
+    lines = [gmsh.model.geo.addLine(tags[i], tags[(i + 1) % 4]) for i in range(4)]
+    gmsh.model.geo.addSurfaceFilling([gmsh.model.geo.addCurveLoop(lines)])
+    gmsh.model.geo.synchronize()
+
+
 def by_gmsh(build, spacing):
     gmsh.initialize(["-nt", "1"])
     gmsh.option.setNumber("General.Verbosity", 0)
     gmsh.option.setNumber("Mesh.Algorithm", 6)
-    gmsh.option.setNumber("Mesh.MeshSizeMin", spacing)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", spacing)
+    if spacing:
+        gmsh.option.setNumber("Mesh.MeshSizeMin", spacing)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", spacing)
     build()
     start = cpu()
     gmsh.model.mesh.generate(2)
@@ -131,7 +158,9 @@ def by_gmsh(build, spacing):
 
 def by_trigrade(program, path, spacing, folder):
     out = folder / "a.off"
-    command = [program, "mesh", path, "--spacing", str(spacing), "-o", out, "--no-check", "--max-triangles", "50000000"]
+    command = [program, "mesh", path, "-o", out, "--no-check", "--max-triangles", "50000000"]
+    if spacing:
+        command += ["--spacing", str(spacing)]
     start = cpu(resource.RUSAGE_CHILDREN)
     run = subprocess.run(command, capture_output=True, text=True, env={"RAYON_NUM_THREADS": "1"})
     seconds = cpu(resource.RUSAGE_CHILDREN) - start
@@ -149,6 +178,7 @@ SHAPES = [
     ("torus", torus, "torus", 39.5),
     ("vase", vase, "vase", 20.5),
     ("sheared", sheared, None, 8.0),
+    ("graded 940:1", graded, None, None),
 ]
 
 
@@ -160,8 +190,10 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for shape, build, example, area in SHAPES:
-            spacing = round((area / (0.433 * wanted)) ** 0.5, 5)
+            spacing = area and round((area / (0.433 * wanted)) ** 0.5, 5)
             text = model(example) if example else {"patches": [{"kind": "bezier", "net": SHEARED}]}
+            if build is graded:
+                text = graded_model()
             for curve in text.get("curves", []):
                 curve.pop("count", None)
             for patch in text["patches"]:

@@ -8,10 +8,11 @@
 
 use super::degree::Degrees;
 use super::patch::{Change, Cut, Origin, Patch, Worth};
-use crate::triangulation::VertexId;
+use crate::point::Point2;
+use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
 
 /// A success must lower the excess of its patch by this much, or it is not worth its disturbance.
-const GAIN_MIN: f64 = 3e-3;
+pub(crate) const GAIN_MIN: f64 = 3e-3;
 /// A change that is so much worse than the best so far after one sweep and flips is given up.
 const HOPELESS: f64 = 1.15;
 /// And before the flips by this factor more, where not everything is tried.
@@ -23,24 +24,36 @@ const SAME: f64 = 5e-3;
 
 /// How much is tried around a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Effort {
+pub(crate) struct Effort {
     /// Rings of triangles in a patch.
-    pub(super) rings: u32,
+    pub(crate) rings: u32,
     /// Length of a chain of changes.
-    pub(super) depth: u32,
+    pub(crate) depth: u32,
     /// Changes tried in each step after the first, least harmful first; 0 for all of them.
-    pub(super) breadth: u32,
+    pub(crate) breadth: u32,
 }
 
 /// What came of a search.
 #[derive(Default)]
-pub(super) struct Attempt {
+pub(crate) struct Attempt {
     /// Changes tried.
-    pub(super) tried: u64,
+    pub(crate) tried: u64,
     /// Where the patch came from.
-    pub(super) origin: Origin,
+    pub(crate) origin: Origin,
     /// What is to take its place, if the search was a success.
-    pub(super) better: Option<Patch>,
+    pub(crate) better: Option<Patch>,
+}
+
+/// The topology that is searched, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Search<'a> {
+    pub(crate) mesh: &'a Triangulation,
+    /// A half-edge out of each vertex that is in a triangle.
+    pub(crate) outgoing: &'a [HalfEdgeId],
+    /// Vertices below this index do not move.
+    pub(crate) fixed: usize,
+    pub(crate) quantum: Option<f64>,
+    pub(crate) effort: Effort,
 }
 
 /// The mesh as it is looked at.
@@ -55,7 +68,7 @@ pub(super) struct View<'a> {
 
 /// Memory for searches, reused from one to the next.
 #[derive(Default)]
-pub(super) struct Searcher {
+pub(crate) struct Searcher {
     base: Patch,
     trial: Patch,
     next: Patch,
@@ -81,13 +94,32 @@ struct Goal {
 impl Searcher {
     /// Searches around a vertex.
     pub(super) fn search(&mut self, view: View<'_>, v: VertexId) -> Attempt {
-        let Effort { rings, depth, breadth } = view.effort;
+        let View { degrees, fixed, quantum, effort } = view;
+        let Degrees { mesh, points, outgoing } = degrees;
+        let search = Search { mesh, outgoing, fixed, quantum, effort };
+        self.search_at(search, v, |v| points[v.index()])
+    }
+
+    /// Searches around a vertex where the vertices are where `place` says: in the plane, or in one
+    /// that touches a surface.
+    pub(crate) fn search_at(
+        &mut self,
+        search: Search<'_>,
+        v: VertexId,
+        place: impl Fn(VertexId) -> Point2,
+    ) -> Attempt {
+        let Search { mesh, outgoing, fixed, quantum, effort } = search;
+        let Effort { rings, depth, breadth } = effort;
         let mut attempt = Attempt::default();
-        let cut = Cut { rings, fixed: view.fixed };
-        let Some(here) = self.base.cut(view.degrees, v, cut, &mut attempt.origin) else {
+        let cut = Cut { rings, fixed };
+        let origin = &mut attempt.origin;
+        let Some(here) = self.base.cut((mesh, outgoing), v, cut, origin, place) else {
             return attempt;
         };
         let now = self.base.worth();
+        if now.excess == f64::INFINITY {
+            return attempt;
+        }
         let bound = now.excess - GAIN_MIN;
         let everything = breadth == 0 || now.worst > BAD;
         let mut goal = Goal {
@@ -106,7 +138,7 @@ impl Searcher {
             if step > 0 && !everything {
                 self.shortlist(breadth as usize);
             }
-            let least = self.try_all(view.quantum, &mut goal, &seen);
+            let least = self.try_all(quantum, &mut goal, &seen);
             if goal.found || least == f64::INFINITY {
                 break;
             }

@@ -12,11 +12,11 @@ use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, Vertex
 /// A small mesh; its vertices are the outline's first, then those inside that may not move, then
 /// the movable ones. What memory it has is reused from one patch to the next.
 #[derive(Default)]
-pub(super) struct Patch {
-    pub(super) mesh: Triangulation,
-    pub(super) points: Vec<Point2>,
+pub(crate) struct Patch {
+    pub(crate) mesh: Triangulation,
+    pub(crate) points: Vec<Point2>,
     /// Vertices below this index do not move.
-    pub(super) fixed: usize,
+    pub(crate) fixed: usize,
     smoother: Smoother,
     /// Vertices around the last change.
     touched: Vec<VertexId>,
@@ -24,11 +24,11 @@ pub(super) struct Patch {
 
 /// Where a patch came from.
 #[derive(Default)]
-pub(super) struct Origin {
+pub(crate) struct Origin {
     /// The triangles it was cut from, in the order they were found.
-    triangles: Vec<TriangleId>,
+    pub(crate) triangles: Vec<TriangleId>,
     /// For each vertex of the patch that of the mesh.
-    pub(super) vertices: Vec<VertexId>,
+    pub(crate) vertices: Vec<VertexId>,
     /// For each border of the patch what lies across it in the mesh.
     outside: Vec<Across>,
     tag: u32,
@@ -36,14 +36,25 @@ pub(super) struct Origin {
 
 /// How good a patch is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Worth {
+pub(crate) struct Worth {
     /// Sum of squared inverse mean ratios above 1, bad ones counted more: 0 where all triangles are
     /// equilateral.
-    pub(super) excess: f64,
+    pub(crate) excess: f64,
     /// Worst inverse mean ratio.
-    pub(super) worst: f64,
-    /// Worst R/(2r) of its poor triangles; 1 without any.
+    pub(crate) worst: f64,
+    /// Worst R/(2r) of its poor triangles, where that is asked for; 1 without any.
     pub(super) aspect: f64,
+}
+
+impl Worth {
+    /// That of no triangles.
+    pub(crate) const NONE: Self = Self { excess: 0.0, worst: 0.0, aspect: 1.0 };
+
+    /// Adds a triangle with an inverse mean ratio.
+    pub(crate) fn add(&mut self, f: f64) {
+        self.excess += f * f - 1.0 + BAD_WEIGHT * (f - BAD).max(0.0);
+        self.worst = self.worst.max(f);
+    }
 }
 
 /// How a patch is cut.
@@ -89,10 +100,11 @@ impl Patch {
     /// the patch; `None` where they are too many, in several regions, or pinch the outline.
     pub(super) fn cut(
         &mut self,
-        Degrees { mesh, points, outgoing }: Degrees<'_>,
+        (mesh, outgoing): (&Triangulation, &[HalfEdgeId]),
         v: VertexId,
         cut: Cut,
         origin: &mut Origin,
+        place: impl Fn(VertexId) -> Point2,
     ) -> Option<VertexId> {
         let mut found = Found::around(mesh, outgoing[v.index()], cut.rings)?;
         let outline = found.sort_vertices(mesh)?;
@@ -100,11 +112,11 @@ impl Patch {
         let held = found.vertices[outline..].partition_point(|v| v.index() < cut.fixed);
         self.fixed = outline + held;
         self.points.clear();
-        self.points.extend(found.vertices.iter().map(|v| points[v.index()]));
+        self.points.extend(found.vertices.iter().map(|&v| place(v)));
         self.mesh.clear();
         for &t in &found.triangles {
-            let place = |v: VertexId| found.vertex_places.get(v.0).expect("a vertex of the patch");
-            self.mesh.add(mesh.corners(t).map(|v| VertexId(place(v))));
+            let number = |v: VertexId| found.vertex_places.get(v.0).expect("a vertex of the patch");
+            self.mesh.add(mesh.corners(t).map(|v| VertexId(number(v))));
         }
         self.link_up(mesh, &found, &mut origin.outside);
         self.smoother.at_rest(&self.mesh, self.points.len());
@@ -174,13 +186,12 @@ impl Patch {
     }
 
     pub(super) fn worth(&self) -> Worth {
-        let mut worth = Worth { excess: 0.0, worst: 0.0, aspect: 1.0 };
+        let mut worth = Worth::NONE;
         for corners in triangles(&self.mesh, &self.points) {
             let [a, b, c] = corners;
             let f = inverse_mean_ratio(a, b, c);
+            worth.add(f);
             worth.aspect = worth.aspect.max(aspect_of_poor(f, corners));
-            worth.excess += f * f - 1.0 + BAD_WEIGHT * (f - BAD).max(0.0);
-            worth.worst = worth.worst.max(f);
         }
         worth
     }
@@ -452,7 +463,7 @@ impl Found {
 impl Origin {
     /// Puts a changed patch in the place of its origin: new vertices get new numbers from `push`,
     /// and `touched` is told each new half-edge.
-    pub(super) fn replace(
+    pub(crate) fn replace(
         &mut self,
         mesh: &mut Triangulation,
         patch: &Patch,

@@ -49,12 +49,28 @@ impl Coons {
         &self.sides[side as usize]
     }
 
+    /// As [`jet`](Self::jet), without the second derivatives.
+    pub(super) fn tangents(&self, u: f64, v: f64) -> Tangents {
+        let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+        let [south, east, north, west] =
+            [(0, u), (1, v), (2, u), (3, v)].map(|(i, t)| unit_tangent(&self.sides[i], t));
+        let [sw, se, ne, nw] = self.corners;
+        let (low, high) = (mix(u, sw, se), mix(u, nw, ne));
+        let point = add(mix(v, south[0], north[0]), mix(u, west[0], east[0]));
+        let du = add(mix(v, south[1], north[1]), sub(east[0], west[0]));
+        let dv = add(mix(u, west[1], east[1]), sub(north[0], south[0]));
+        Tangents {
+            point: along(point, -1.0, mix(v, low, high)),
+            u: along(du, -1.0, mix(v, sub(se, sw), sub(ne, nw))),
+            v: along(dv, -1.0, sub(high, low)),
+        }
+    }
+
     pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
         let [south, east, north, west] =
             [(0, u), (1, v), (2, u), (3, v)].map(|(i, t)| unit_jet(&self.sides[i], t));
         let [sw, se, ne, nw] = self.corners;
-        let mix = |t: f64, a: Vector, b: Vector| add(scale(1.0 - t, a), scale(t, b));
         let bilinear = mix(v, mix(u, sw, se), mix(u, nw, ne));
         let bilinear_u = mix(v, sub(se, sw), sub(ne, nw));
         let bilinear_v = sub(mix(u, nw, ne), mix(u, sw, se));
@@ -75,6 +91,18 @@ impl Coons {
             vv: mix(u, west.second, east.second),
         }
     }
+}
+
+fn mix(t: f64, a: Vector, b: Vector) -> Vector {
+    add(scale(1.0 - t, a), scale(t, b))
+}
+
+/// A curve's point and first derivative with its parameter stretched to [0, 1].
+fn unit_tangent(curve: &Curve, t: f64) -> [Vector; 2] {
+    let [start, end] = curve.domain();
+    let width = end - start;
+    let [point, first] = curve.tangent(start + width * t);
+    [point, scale(width, first)]
 }
 
 /// A curve's jet with its parameter stretched to [0, 1].

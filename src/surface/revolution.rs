@@ -50,9 +50,25 @@ impl Revolution {
         [along, sub(arm, along), cross(self.axis, arm)]
     }
 
+    /// As [`jet`](Self::jet), without the second derivatives.
+    pub(super) fn tangents(&self, u: f64, v: f64) -> Tangents {
+        let [point, first] = self.profile.tangent(u);
+        let (sine, cosine) = libm::sincos(v);
+        let turn = |[along, across, ahead]: [Vector; 3]| {
+            add(along, add(scale(cosine, across), scale(sine, ahead)))
+        };
+        let arm = self.split(sub(point, self.origin));
+        let [_, across, ahead] = arm;
+        Tangents {
+            point: add(self.origin, turn(arm)),
+            u: turn(self.split(first)),
+            v: add(scale(-sine, across), scale(cosine, ahead)),
+        }
+    }
+
     pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         let jet = self.profile.jet(u);
-        let (sine, cosine) = (libm::sin(v), libm::cos(v));
+        let (sine, cosine) = libm::sincos(v);
         let turn = |[along, across, ahead]: [Vector; 3]| {
             add(along, add(scale(cosine, across), scale(sine, ahead)))
         };

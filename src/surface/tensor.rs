@@ -121,35 +121,34 @@ impl Tensor {
         }
     }
 
-    /// Sums for each order of derivative below N by u and by v.
+    /// Sums for orders of derivatives by u and by v that are together below N.
     fn sums<const N: usize>(&self, u: f64, v: f64) -> [[Sum; N]; N] {
-        let [u, v] = [(u, 0), (v, 1)].map(|(t, i)| {
-            let (degree, count) = (self.degrees[i], self.counts[i]);
-            let t = t.clamp(self.knots[i][degree], self.knots[i][count]);
-            Basis::at(&self.knots[i], degree, count, t, N - 1)
-        });
-        let by = |basis: &Basis, r: usize| {
-            let all = [basis.value[r], basis.slope[r], basis.bend[r]];
-            std::array::from_fn::<f64, N, _>(|order| all[order])
-        };
+        let (u, v) = (self.basis::<N>(0, u), self.basis::<N>(1, v));
         let mut sums = [[Sum::default(); N]; N];
         for r in 0..=self.degrees[0] {
             let mut row = [Sum::default(); N];
             let start = (u.first + r) * self.counts[1] + v.first;
             for s in 0..=self.degrees[1] {
                 let weight = self.weights.get(start + s).copied().unwrap_or(1.0);
-                let point = scale(weight, self.net[start + s]);
-                for (sum, part) in row.iter_mut().zip(by(&v, s)) {
-                    sum.add(part, &Sum { point, weight });
+                let control = Sum { point: scale(weight, self.net[start + s]), weight };
+                for (sum, parts) in row.iter_mut().zip(&v.rows) {
+                    sum.add(parts[s], &control);
                 }
             }
-            for (i, part) in by(&u, r).into_iter().enumerate() {
-                for j in 0..N {
-                    sums[i][j].add(part, &row[j]);
+            for (i, (line, parts)) in sums.iter_mut().zip(&u.rows).enumerate() {
+                for (sum, along_v) in line[..N - i].iter_mut().zip(&row) {
+                    sum.add(parts[r], along_v);
                 }
             }
         }
         sums
+    }
+
+    #[inline]
+    fn basis<const N: usize>(&self, direction: usize, t: f64) -> Basis<N> {
+        let (degree, count) = (self.degrees[direction], self.counts[direction]);
+        let knots = &self.knots[direction];
+        Basis::at(knots, degree, count, t.clamp(knots[degree], knots[count]))
     }
 
     pub(super) fn side(&self, side: Side) -> Curve {

@@ -22,6 +22,13 @@ pub(super) struct Lift {
     pub(super) normal: Vector,
 }
 
+impl Lift {
+    /// Whether the map is singular there.
+    pub(super) fn is_pole(&self) -> bool {
+        self.normal == [0.0; 3]
+    }
+}
+
 /// A patch with its scaled parameters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheet<'a> {
@@ -105,6 +112,50 @@ impl SurfaceChart<'_> {
         }
         h
     }
+
+    /// The plane that touches the surface at a point, with coordinates from there; `length` is that of
+    /// an edge near by. `None` where the map is singular.
+    pub(super) fn frame_at(&self, at: Point2, length: f64) -> Option<Frame> {
+        let tangents = self.sheet.tangents(at);
+        let x = vector::unit(tangents.u)?;
+        let y = vector::unit(cross(cross(tangents.u, tangents.v), x))?;
+        let mut frame = Frame {
+            origin: tangents.point,
+            x,
+            y,
+            length_sq: length * length,
+            middle: at,
+            middle_local: Point2::new(0.0, 0.0),
+            inverse: Matrix([0.0; 4]),
+            form: FirstForm::new(&tangents),
+        };
+        frame.inverse = frame.jacobian(&tangents).inverse()?;
+        Some(frame)
+    }
+
+    /// The place with these coordinates in a frame, by Newton's method from scaled parameters near it.
+    pub(super) fn place_from(
+        &self,
+        frame: &Frame,
+        local: Point2,
+        start: Point2,
+    ) -> Option<Site<Lift>> {
+        let mut at = self.sheet.clamped(start);
+        for _ in 0..NEWTON_STEPS {
+            let tangents = self.sheet.tangents(at);
+            let there = frame.local_of(tangents.point);
+            if there.distance_sq(local) <= NEWTON_ENOUGH_SQ * frame.length_sq {
+                return Some(Site { at, lift: lift(&tangents) });
+            }
+            let inverse = frame.jacobian(&tangents).inverse()?;
+            let [du, dv] = inverse.times(local.x - there.x, local.y - there.y);
+            at = self.sheet.clamped(Point2::new(at.x + du, at.y + dv));
+        }
+        let tangents = self.sheet.tangents(at);
+        let missed_sq = frame.local_of(tangents.point).distance_sq(local);
+        (missed_sq <= NEWTON_FAILED_SQ * frame.length_sq)
+            .then(|| Site { at, lift: lift(&tangents) })
+    }
 }
 
 /// Flat coordinates near a base edge: its origin is 0, the edge runs along x, and the plane is
@@ -141,7 +192,7 @@ impl Matrix {
 }
 
 impl Frame {
-    fn local_of(&self, point: Vector) -> Point2 {
+    pub(super) fn local_of(&self, point: Vector) -> Point2 {
         let arm = sub(point, self.origin);
         Point2::new(dot(self.x, arm), dot(self.y, arm))
     }
@@ -152,7 +203,7 @@ impl Frame {
     }
 
     /// Parameters by the linear map at the middle.
-    fn guess(&self, local: Point2) -> Point2 {
+    pub(super) fn guess(&self, local: Point2) -> Point2 {
         let d = [local.x - self.middle_local.x, local.y - self.middle_local.y];
         let [du, dv] = self.inverse.times(d[0], d[1]);
         Point2::new(self.middle.x + du, self.middle.y + dv)
@@ -200,21 +251,7 @@ impl Chart for SurfaceChart<'_> {
     }
 
     fn place(&self, frame: &Frame, local: Point2) -> Option<Site<Lift>> {
-        let mut at = self.sheet.clamped(frame.guess(local));
-        for _ in 0..NEWTON_STEPS {
-            let tangents = self.sheet.tangents(at);
-            let there = frame.local_of(tangents.point);
-            if there.distance_sq(local) <= NEWTON_ENOUGH_SQ * frame.length_sq {
-                return Some(Site { at, lift: lift(&tangents) });
-            }
-            let inverse = frame.jacobian(&tangents).inverse()?;
-            let [du, dv] = inverse.times(local.x - there.x, local.y - there.y);
-            at = self.sheet.clamped(Point2::new(at.x + du, at.y + dv));
-        }
-        let tangents = self.sheet.tangents(at);
-        let missed_sq = frame.local_of(tangents.point).distance_sq(local);
-        (missed_sq <= NEWTON_FAILED_SQ * frame.length_sq)
-            .then(|| Site { at, lift: lift(&tangents) })
+        self.place_from(frame, local, frame.guess(local))
     }
 
     fn spacing(&self, frame: &Frame, local: Point2, _: Base, _: &mut Hint) -> f64 {

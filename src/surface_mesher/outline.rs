@@ -9,7 +9,7 @@ use crate::model::{Model, Patch, Trim, TrimCurve};
 use crate::predicates::Sign;
 use crate::surface::{Line, Side, Surface, Trace};
 use crate::vector::{Vector, distance, key};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A smooth curve of the model, which may be the side of any number of patches.
 #[derive(Clone, Debug)]
@@ -22,6 +22,8 @@ pub(super) struct Shared {
     /// Vertices of the model at the nodes.
     pub(super) vertices: Vec<u32>,
     pub(super) marker: Option<i32>,
+    /// Whether the model says how it is cut.
+    pub(super) has_rule: bool,
     /// How many sides it is.
     pub(super) uses: u32,
 }
@@ -243,6 +245,9 @@ impl Outline {
         &mut self,
         spacing: impl Fn(&crate::curve::CurveJet) -> f64,
     ) -> Result<(), SurfaceMeshError> {
+        for shared in &mut self.curves {
+            shared.has_rule = !shared.nodes.is_empty();
+        }
         for shared in self.curves.iter_mut().filter(|s| s.uses > 0 && s.nodes.is_empty()) {
             shared.nodes = discretize::by_spacing(&shared.curve, |jet, _| spacing(jet))
                 .map_err(|error| SurfaceMeshError::Curve { name: shared.name.clone(), error })?;
@@ -307,6 +312,12 @@ impl Outline {
         };
         let (first, last) = (end(along.first()?, true), end(along.last()?, false));
         Some(if is_forward(side) { [first, last] } else { [last, first] })
+    }
+
+    /// Vertices of curves that are cut as the model says.
+    pub(super) fn ruled_vertices(&self) -> BTreeSet<u32> {
+        let ruled = self.curves.iter().filter(|shared| shared.has_rule);
+        ruled.flat_map(|shared| shared.vertices.iter().copied()).collect()
     }
 
     fn cut_end(&self, cut: &Cut, at_start: bool) -> u32 {
@@ -400,7 +411,15 @@ impl Outline {
 impl Shared {
     fn new(curve: Line, name: &str) -> Self {
         let (nodes, vertices) = (Vec::new(), Vec::new());
-        Self { curve, name: name.to_owned(), nodes, vertices, marker: None, uses: 0 }
+        Self {
+            curve,
+            name: name.to_owned(),
+            nodes,
+            vertices,
+            marker: None,
+            has_rule: false,
+            uses: 0,
+        }
     }
 }
 

@@ -1,11 +1,14 @@
 //! One patch: the background triangulation of its outline in (u, v), the front, improvement.
 
 use super::chart::{Lift, SurfaceChart};
+use super::defects::{Cloth, Defects};
 use super::outline::{Node, Rim};
-use super::{SurfaceMeshError, flip, smooth};
+use super::smooth::Smoother;
+use super::{SurfaceMeshError, flip};
 use crate::background::{Background, OUTSIDE};
 use crate::domain::validate::{Plc, PlcInside, PlcSegment};
 use crate::front::{FrontMesh, FrontOptions, FrontStats, Start};
+use crate::improve::ImproveOptions;
 use crate::mesher::Options;
 use crate::point::Point2;
 use crate::size::{Prediction, predict};
@@ -108,20 +111,38 @@ impl<'a> Draft<'a> {
         lifts = laid_lifts;
         let FrontMesh { mut points, mut mesh, stats, .. } = laid;
         let fixed = background.points.len();
-        let mut star = smooth::Smoother::new(&chart, fixed);
-        let (mut flips, mut moves) = (0, 0);
-        for _ in 0..options.improve.sweeps {
-            flips += flip::towards_shape(&mut mesh, &points, &lifts);
-            let moved = star.sweep(&mesh, &mut points, &mut lifts);
-            moves += moved;
-            if moved == 0 {
-                break;
-            }
-        }
-        flips += flip::towards_shape(&mut mesh, &points, &lifts);
+        let cloth = Cloth { mesh: &mut mesh, points: &mut points, lifts: &mut lifts };
+        let [flips, moves] = improve(&chart, cloth, fixed, options.improve);
         let parameters = points.iter().map(|&p| chart.sheet.parameters(p)).collect();
         Ok(PatchMesh { parameters, lifts, mesh, stats, flips, moves })
     }
+}
+
+/// Flips and smooths, and changes the topology where the lattice has defects; returns the numbers of
+/// flips and moves.
+fn improve(
+    chart: &SurfaceChart<'_>,
+    mut cloth: Cloth<'_>,
+    fixed: usize,
+    options: ImproveOptions,
+) -> [u64; 2] {
+    let mut star = Smoother::new(chart, fixed, cloth.points.len());
+    let done = star.settle(&mut cloth, options.sweeps);
+    if options.passes == 0 || options.depth == 0 {
+        return done;
+    }
+    let mut defects = Defects::new(chart, &cloth, fixed, options);
+    for _ in 0..options.passes {
+        if !defects.pass(&mut cloth) {
+            break;
+        }
+    }
+    if defects.changes == 0 {
+        return done;
+    }
+    star.wake(&cloth, |v| defects.unsettled[v]);
+    let more = star.settle(&mut cloth, options.sweeps);
+    [done[0] + more[0], done[1] + more[1]]
 }
 
 /// The half-edge of each border edge, by its number: flips move them.

@@ -17,7 +17,7 @@ pub(super) struct Curvature {
 }
 
 /// Edges are laid up to this much longer than wanted, so that much less is wanted.
-const SAFETY: f64 = 0.85;
+const SAFETY: f64 = 0.82;
 
 impl Curvature {
     pub(super) fn is_on(&self) -> bool {

@@ -3,6 +3,8 @@
 //! by the triangles in space.
 
 use super::chart::{Lift, SurfaceChart, lift};
+use super::defects::Cloth;
+use super::flip;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, Triangulation};
@@ -25,20 +27,50 @@ const TRIES: u32 = 3;
 const STEP_MIN: f64 = 2e-3;
 
 impl<'a> Smoother<'a> {
-    pub(super) fn new(chart: &'a SurfaceChart<'a>, fixed: usize) -> Self {
+    /// For a mesh of so many vertices, all of them active.
+    pub(super) fn new(chart: &'a SurfaceChart<'a>, fixed: usize, count: usize) -> Self {
         let (link, link_vertices, flat) = (Vec::new(), Vec::new(), Vec::new());
-        Self { chart, fixed, active: Vec::new(), link, link_vertices, flat }
+        Self { chart, fixed, active: vec![true; count], link, link_vertices, flat }
+    }
+
+    /// For a mesh of so many vertices that are all good where they are.
+    pub(super) fn resting(chart: &'a SurfaceChart<'a>, fixed: usize, count: usize) -> Self {
+        Self { active: vec![false; count], ..Self::new(chart, fixed, count) }
+    }
+
+    /// Looks again at some vertices and those around them.
+    pub(super) fn wake(&mut self, cloth: &Cloth<'_>, is_marked: impl Fn(usize) -> bool) {
+        self.active.resize(cloth.points.len(), true);
+        for t in cloth.mesh.triangles() {
+            let corners = cloth.mesh.corners(t).map(|v| v.index());
+            if corners.iter().any(|&v| is_marked(v)) {
+                corners.into_iter().for_each(|v| self.active[v] = true);
+            }
+        }
+    }
+
+    /// Flips and sweeps where there is something to look at; returns the numbers of flips and moves.
+    pub(super) fn settle(&mut self, cloth: &mut Cloth<'_>, sweeps: u32) -> [u64; 2] {
+        let (mut flips, mut moves) = (0, 0);
+        for _ in 0..sweeps {
+            flips += self.flip(cloth);
+            let moved = self.sweep(cloth.mesh, cloth.points, cloth.lifts);
+            moves += moved;
+            if moved == 0 {
+                break;
+            }
+        }
+        flips += self.flip(cloth);
+        [flips, moves]
+    }
+
+    fn flip(&self, cloth: &mut Cloth<'_>) -> u64 {
+        flip::towards_shape(cloth.mesh, cloth.points, cloth.lifts, &self.active)
     }
 
     /// One sweep over the active vertices in index order; returns the number of moves.
-    pub(super) fn sweep(
-        &mut self,
-        mesh: &Triangulation,
-        points: &mut [Point2],
-        lifts: &mut [Lift],
-    ) -> u64 {
+    fn sweep(&mut self, mesh: &Triangulation, points: &mut [Point2], lifts: &mut [Lift]) -> u64 {
         let outgoing = mesh.outgoing(points.len());
-        self.active.resize(points.len(), true);
         let mut moves = 0;
         for v in self.fixed..points.len() {
             if !std::mem::take(&mut self.active[v]) {

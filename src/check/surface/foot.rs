@@ -24,6 +24,8 @@ const SEEDS: usize = 3;
 /// As many for a vertex that those few do not show to lie on the surface: where patches cross or
 /// touch, the nearest lattice points may all be on the wrong one.
 const SEEDS_OF_VERTEX: usize = 60;
+/// Of those, one in this many steps of the lattice in either direction.
+const PART: f64 = 5.5;
 /// A vertex on the surface may be off by this fraction of the model's size: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Triangles in a run.
@@ -32,8 +34,9 @@ const RUN: usize = 2048;
 const SLOTS: usize = 4096;
 /// A sample farther from the foot found than this fraction of the longest side is searched for anew.
 const BELIEVED: f64 = 0.25;
-/// Steps shorter than this fraction of the distance do not change it.
-const STEP_OF_DISTANCE: f64 = 1e-3;
+/// Steps shorter than this fraction of the distance change it by half the square of it: less than a
+/// part in ten thousand.
+const STEP_OF_DISTANCE: f64 = 1e-2;
 /// Steps shorter than this fraction of the model's size are rounding.
 const STEP_OF_SIZE: f64 = 1e-13;
 
@@ -126,13 +129,25 @@ impl Sheets {
     fn foot(&self, tree: &Tree<Seed>, p: Vector, seeds: usize) -> Foot {
         let none = Seed { piece: 0, at: [0.0; 2] };
         let mut best = Foot { seed: none, distance: f64::INFINITY, normal: None };
+        let mut tried: Vec<Seed> = Vec::new();
         for (_, seed) in tree.nearest(p, seeds) {
+            if seeds > SEEDS && tried.iter().any(|other| self.are_near(other, &seed)) {
+                continue;
+            }
+            tried.push(seed);
             let foot = self.foot_from(seed, p);
             if foot.distance < best.distance {
                 best = foot;
             }
         }
         best
+    }
+
+    /// Whether two places are the same part of the same piece, whose foot either of them finds.
+    fn are_near(&self, a: &Seed, b: &Seed) -> bool {
+        let domain = self.pieces[a.piece].0.domain();
+        let reach = |i: usize| PART / f64::from(LATTICE) * (domain[i][1] - domain[i][0]);
+        a.piece == b.piece && (0..2).all(|i| (a.at[i] - b.at[i]).abs() <= reach(i))
     }
 
     /// Gauss and Newton's steps, kept in the rectangle of parameters; a step that leads farther away
