@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Processor time of a program, kept in whole seconds by the shell's `ulimit -t`: so a busy machine
-    /// makes no hangs. One that waits for ever is ended after [`PATIENCE`] times as much by the clock.
+    /// makes no hangs. One that waits for ever is ended after a few times as much by the clock.
     /// On Windows it is time by the clock.
     pub time: Duration,
     /// Address space in bytes. Kept by the shell's `ulimit -v`, where that works (Linux, the BSDs);
