@@ -399,6 +399,8 @@ fn collect(laid: FrontMesh, background: &Background, made: Made, scale: &Scale) 
         *corner = renumber.number(*corner);
     }
     let regions = region_markers(&topology, background);
+    // Half of all memory: the copies below take its place.
+    drop(topology);
     let edges = marked_edges(background, &renumber);
     let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
     let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();

@@ -488,6 +488,28 @@ fn chains_of_changes_find_what_single_ones_do_not() {
     assert!(is_conforming(&chains.mesh));
 }
 
+// spec: I22
+#[test]
+fn the_least_harmful_changes_find_as_much_as_all_of_them() {
+    let airfoil = Sketch::default()
+        .add_loop(circle(60, 0.0, 0.0, 15.0), 1)
+        .add_loop(circle(120, 0.0, 0.0, 0.5), 2);
+    let run = |breadth| {
+        let improve = ImproveOptions { breadth, tries_max: u64::MAX, ..ImproveOptions::level(1) };
+        airfoil.mesh(&Options { improve, ..Options::default() })
+    };
+    let [all, narrow, narrowest] = [0, 6, 1].map(run);
+    assert!(
+        narrow.improve.tried < all.improve.tried * 3 / 4,
+        "{:?} {:?}",
+        narrow.improve,
+        all.improve
+    );
+    assert!(narrowest.improve.tried < narrow.improve.tried);
+    let [all, narrow] = [&all, &narrow].map(|run| mean_aspect(&run.mesh) - 1.0);
+    assert!(narrow < 1.1 * all, "mean - 1 is {narrow}, with all changes {all}");
+}
+
 // spec: I21
 #[test]
 fn no_chain_is_tried_where_none_is_allowed() {

@@ -33,12 +33,13 @@ fn rectangle([x0, y0]: [f64; 2], [x1, y1]: [f64; 2], segments: u32) -> Vec<[f64;
     (0..4).flat_map(side).collect()
 }
 
-/// Rectangles of different sizes, one inside the hole of another, none on top of another.
+/// Rectangles of different sizes, one inside the hole of another, none on top of another. No edge is so
+/// coarse that it would be split off: that looks at distances, across gaps too.
 fn rings() -> Vec<Vec<[f64; 2]>> {
     vec![
         rectangle([0.25, 0.0], [1.0, 1.0], 18),
         rectangle([-1.0, -0.9], [-0.25, 0.9], 23),
-        rectangle([-0.8, -0.6], [-0.4, 0.7], 11),
+        rectangle([-0.8, -0.6], [-0.4, 0.7], 17),
         rectangle([-0.7, -0.3], [-0.5, 0.2], 7),
         rectangle([0.3, -0.9], [0.9, -0.2], 12),
     ]
@@ -119,7 +120,7 @@ fn a_piece_has_the_mesh_that_it_has_alone() {
         all.extend(shapes(&mesh).into_iter().filter(|shape| !shape.iter().all(is_far)));
     }
     assert!(all.len() > 1000, "{}", all.len());
-    assert_eq!(shapes(&together), all);
+    assert!(shapes(&together) == all, "a piece is not what it is alone");
 }
 
 fn is_far(&[x, y]: &[u64; 2]) -> bool {
@@ -149,7 +150,7 @@ fn pieces_have_the_same_bytes_at_any_number_of_threads() {
                 (bits(&apart.mesh), bits(&joined.mesh), apart.front, joined.front)
             })
         });
-        assert!(runs[0].1.0.len() > 300, "the regions are meshed, not only triangulated");
+        assert!(runs[0].1.0.len() > 200, "the regions are meshed, not only triangulated");
         for (threads, run) in THREADS.iter().zip(&runs) {
             assert!(*run == runs[0], "{threads} threads");
         }

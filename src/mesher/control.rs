@@ -24,7 +24,11 @@ const WIDTH_MIN: f64 = 4e-3;
 /// A mesh whose count misses the target by no more than this is taken at once.
 const TARGET_MISS: f64 = 0.02;
 /// Meshes made for one target.
-const RUNS_MAX: u32 = 6;
+const RUNS_MAX: usize = 6;
+/// Counts jump where a layer more or less fits, and then go back and forth. A mesh that still misses
+/// by more than the second figure is tried at other predictions near the target.
+const DETOURS: [f64; 8] = [1.0, 0.98, 1.02, 0.96, 1.04, 0.94, 1.06, 0.92];
+const DETOUR_MISS: f64 = 0.05;
 /// Share of the limit that a coarsened mesh is planned to have: predictions err.
 const COARSEN_SHARE: f64 = 0.85;
 
@@ -131,16 +135,20 @@ impl Control<'_> {
         let mut best = first;
         let mut wanted = best.prediction.triangles;
         let mut count = best.mesh.triangles.len() as f64;
-        for _ in 1..RUNS_MAX {
-            if miss(&best) <= TARGET_MISS {
+        for run in 1..RUNS_MAX + DETOURS.len() {
+            let detour = run.checked_sub(RUNS_MAX).map(|i| DETOURS[i]);
+            if miss(&best) <= if detour.is_some() { DETOUR_MISS } else { TARGET_MISS } {
                 break;
             }
-            wanted *= target as f64 / count;
+            wanted = match detour {
+                None => wanted * (target as f64 / count),
+                Some(factor) => target as f64 * factor,
+            };
             let (fields, prediction) = self.fitting(wanted)?;
             if prediction.triangles > self.options.triangles_max as f64 {
                 break;
             }
-            if prediction == best.prediction {
+            if prediction == best.prediction && detour.is_none() {
                 // The boundary alone decides.
                 break;
             }
