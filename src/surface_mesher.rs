@@ -344,8 +344,8 @@ struct Plan {
     outline: Outline,
     field: SpaceField,
     curvature: Curvature,
-    /// How far off is rounding.
-    tolerance: f64,
+    /// How far off is the same, and how far off its surface no curve may be.
+    tolerances: [f64; 2],
 }
 
 impl Plan {
@@ -378,10 +378,13 @@ impl Plan {
         } else {
             outline.cut(|_| spacing)?;
         }
-        outline.number(ROUNDING * diagonal);
+        let same = model.tolerance.unwrap_or(0.0);
+        let tolerance = same.max(ROUNDING * diagonal);
+        let off = model.tolerance.map_or(trim::OFF * diagonal, |_| tolerance);
+        outline.number(tolerance);
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
-        Ok(Self { outline, field, curvature, tolerance: ROUNDING * diagonal })
+        Ok(Self { outline, field, curvature, tolerances: [tolerance, off] })
     }
 
     /// What is told of a run before its first triangle.
@@ -441,7 +444,7 @@ impl Plan {
     fn rims(&self, model: &Model) -> Result<Vec<Rim>, SurfaceMeshError> {
         let around = |piece: &outline::Piece| {
             let name = model.patches[piece.patch].name.clone();
-            match self.outline.rim(piece, self.tolerance) {
+            match self.outline.rim(piece, self.tolerances) {
                 Err(reason) => Err(SurfaceMeshError::Trim { name, reason }),
                 Ok(rim) if rim.nodes.iter().any(|node| node.vertex == u32::MAX) => {
                     Err(SurfaceMeshError::Flat { name })

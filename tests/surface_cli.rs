@@ -216,3 +216,47 @@ fn a_form_without_regions_is_checked_against_all_patches() {
     let mesh = text(&folder.path().join("teapot.stl"));
     assert_exit(&run(&["mesh", &example("teapot.json"), "-o", &mesh]), 0);
 }
+
+// spec: K38
+#[test]
+fn an_iges_file_is_meshed_checked_and_welded() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let mesh = text(&folder.path().join("part.vtu"));
+    let model = example("tube.igs");
+    let told = assert_exit(&run(&["mesh", &model, "--spacing", "0.3", "-o", &mesh]), 0);
+    assert!(told.contains("lengths are in millimetres") && told.contains("closed"), "{told}");
+    let told = assert_exit(&run(&["check", &mesh, "--surface", &model, "--closed"]), 0);
+    assert!(told.contains("Euler number 2, closed"), "{told}");
+    let welded =
+        ["mesh", &model, "--spacing", "0.3", "--weld", "1e-4", "--json", "-o", &mesh];
+    let output = run(&welded);
+    assert_exit(&output, 0);
+    let told: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(told["notes"][0].as_str().is_some_and(|note| note.contains("millimetres")), "{told}");
+    let check = ["check", &mesh, "--surface", &model, "--weld", "1e-4"];
+    assert_exit(&run(&check), 0);
+    let cut = folder.path().join("cut.igs");
+    let whole = std::fs::read(&model).expect("the example");
+    std::fs::write(&cut, &whole[..whole.len() / 2]).expect("writable");
+    let told = assert_exit(&run(&["mesh", &text(&cut), "-o", &mesh]), 2);
+    assert!(told.contains("cut.igs:"), "{told}");
+    for wrong in ["0", "-1", "nan"] {
+        let weld = format!("--weld={wrong}");
+        assert_exit(&run(&["mesh", &model, &weld, "-o", &mesh]), 2);
+    }
+}
+
+// spec: X71
+#[test]
+fn step_files_are_refused_with_what_to_do_instead() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let mesh = text(&folder.path().join("a.vtu"));
+    for name in ["part.step", "part.STP"] {
+        let path = text(&folder.path().join(name));
+        std::fs::write(&path, "ISO-10303-21;\n").expect("writable");
+        for arguments in [["mesh", &path, "-o", &mesh], ["check", &mesh, "--surface", &path]] {
+            let told = assert_exit(&run(&arguments), 2);
+            assert!(told.contains("STEP files are not read") && told.contains("IGES"), "{told}");
+        }
+    }
+}

@@ -109,8 +109,8 @@ Examples:
   trigrade mesh wing.poly --method afm --dry-run
   trigrade mesh vase.json --spacing 0.05 -o vase.stl -o vase.msh")]
 pub struct MeshArguments {
-    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json or .bpt; `-` is
-    /// standard input.
+    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json, .bpt or .igs;
+    /// `-` is standard input.
     #[arg(value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
     pub domain: PathBuf,
     /// Where the mesh goes; the extension names the form, `-` is standard output; repeatable.
@@ -348,6 +348,10 @@ pub struct SurfaceFlags {
     /// Largest turn of the surface's normal along an edge, in degrees.
     #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
     pub angle_per_edge: Option<f64>,
+    /// Make curves one that trim patches and agree within this, as the edges of neighbouring faces of
+    /// IGES files do; corners likewise.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    pub weld: Option<f64>,
 }
 
 /// `--method`
@@ -569,6 +573,9 @@ pub struct CheckArguments {
     /// No triangle's normal may be off the surface's by more than this, in degrees.
     #[arg(long, value_name = "DEGREES", value_parser = parse_positive, requires = "surface")]
     pub normal_deviation: Option<f64>,
+    /// Curves of the model that agree within this are one, as they were for `mesh`.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive, requires = "surface")]
+    pub weld: Option<f64>,
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,

@@ -37,7 +37,9 @@ use std::time::Duration;
 /// Exit code 2: the file cannot be read.
 pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     let path = &arguments.domain;
-    let is_one = |e: &OsStr| ["json", "bpt"].iter().any(|known| e.eq_ignore_ascii_case(known));
+    let known = ["json", "bpt", "igs", "iges"];
+    let is_one = |e: &OsStr| known.iter().any(|known| e.eq_ignore_ascii_case(known));
+    refuse_step(path)?;
     match arguments.reading.from.as_deref() {
         Some(form) => Ok(ModelForm::from_name(form).is_some()),
         None if is_dash(path) || !path.extension().is_some_and(is_one) => Ok(false),
@@ -45,18 +47,39 @@ pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     }
 }
 
-/// Reads a surface model.
+/// STEP files are not read; what to do instead is said before anything is tried.
+fn refuse_step(path: &Path) -> Result<(), Failure> {
+    let is_step = |e: &OsStr| ["step", "stp", "p21"].iter().any(|k| e.eq_ignore_ascii_case(k));
+    if !path.extension().is_some_and(is_step) {
+        return Ok(());
+    }
+    let diagnostic = Diagnostic::new("STEP files are not read").rule("X71").at(path.display());
+    let help = "export the surfaces as IGES (trimmed surfaces, not solids), or as NURBS in JSON; a mesh of \
+                the part, as STL or OBJ, goes through `trigrade remesh`";
+    Err(Failure::cannot_run(diagnostic.help(help)))
+}
+
+/// Reads a surface model; with `weld`, curves that agree within it are made one.
 ///
 /// # Errors
 /// Exit code 2: the file cannot be read or is malformed.
-pub fn load_model(path: &Path, form: Option<&str>) -> Result<(Input, Model), Failure> {
+pub fn load_model(
+    path: &Path,
+    form: Option<&str>,
+    weld: Option<f64>,
+) -> Result<(Input, Model), Failure> {
+    refuse_step(path)?;
     let input = load(path)?;
     let form = match form {
         Some(name) => ModelForm::from_name(name),
         None => ModelForm::of(path, &input.bytes),
     };
     let form = form.unwrap_or(ModelForm::Json);
-    let model = read_model(&input.bytes, form).map_err(|error| malformed(&input.name, &error))?;
+    let mut model =
+        read_model(&input.bytes, form).map_err(|error| malformed(&input.name, &error))?;
+    if let Some(tolerance) = weld {
+        model.weld(tolerance);
+    }
     Ok((input, model))
 }
 
@@ -72,7 +95,11 @@ pub fn run(
     let mut watch = Watch::new(console);
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
-    let (input, model) = load_model(&arguments.domain, arguments.reading.from.as_deref())?;
+    let (input, model) = load_model(
+        &arguments.domain,
+        arguments.reading.from.as_deref(),
+        arguments.on_surface.weld,
+    )?;
     let options = SurfaceOptions {
         common: arguments.options.options(),
         chord_error: arguments.on_surface.chord_error,
@@ -84,6 +111,7 @@ pub fn run(
     let mut outputs = Outputs::prepare(&targets, cleanup)?;
     let mut summary =
         Summary { name: input.name.clone(), patches: model.patches.len(), ..Summary::default() };
+    summary.notes.clone_from(&model.notes);
     if arguments.dry_run {
         let predicted = prediction(|observer| mesh_model(&model, &options, observer));
         summary.prediction = Some(predicted.map_err(|e| no_mesh(&e))?);
@@ -167,6 +195,8 @@ fn write_all(
 struct Summary {
     name: String,
     patches: usize,
+    /// What the reader of the model wants to be told.
+    notes: Vec<String>,
     prediction: Option<Prediction>,
     meshed: Option<SurfaceMeshed>,
     judged: Option<Judged<SurfaceReport>>,
@@ -191,6 +221,7 @@ impl Summary {
     fn text(&self, laps: &[(String, Duration)], timings: bool) -> String {
         let mut lines = vec![format!("{}: {} patches", self.name, count(self.patches as u64))];
         let mut line = |label: &str, text: String| lines.push(format!("  {label:<11}{text}"));
+        self.notes.iter().for_each(|note| line("note", note.clone()));
         let predicted = self.prediction.or(self.meshed.as_ref().map(|meshed| meshed.prediction));
         if let Some(prediction) = predicted {
             line("predicted", format!("{} triangles", count(prediction.triangles as u64)));
@@ -227,6 +258,7 @@ impl Summary {
             "schema": "trigrade-mesh/1",
             "verdict": judged::word(self.judged.as_ref()),
             "domain": self.name,
+            "notes": self.notes,
             "predicted": predicted.map(|p| p.triangles),
             "points": self.meshed.as_ref().map(|meshed| meshed.mesh.points.len()),
             "triangles": self.meshed.as_ref().map(|meshed| meshed.mesh.triangles.len()),

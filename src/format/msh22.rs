@@ -3,6 +3,7 @@
 use crate::format::MeshForm;
 use crate::format::assemble::{Assembler, Cell};
 use crate::format::error::{ReadError, WriteError};
+use crate::format::msh_view;
 use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, TRIANGLE};
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
@@ -127,6 +128,7 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> Resul
     write_edges(mesh, &groups, is_binary, out)?;
     write_triangles(mesh, &groups, is_binary, out)?;
     out.text(&format!("{end}$EndElements\n"))?;
+    msh_view::write(mesh.parameters(), is_binary, out)?;
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use crate::format::assemble::{Assembler, Cell};
 use crate::format::error::{ReadError, ReadFault, WriteError};
+use crate::format::msh_view;
 use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, TRIANGLE};
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
@@ -171,6 +172,7 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> Resul
     out.entities(mesh, &groups)?;
     out.nodes(mesh)?;
     out.elements(mesh, &groups)?;
+    msh_view::write(mesh.parameters(), is_binary, out.out)?;
     Ok(())
 }
 
