@@ -26,9 +26,9 @@ mod trim;
 use crate::curve::discretize::DiscretizeError;
 use crate::front::{FrontError, FrontStats};
 use crate::mesh::MeshData;
-use crate::mesher::{Observer, Options, OptionsError, Stage};
+use crate::mesher::{Gradation, Observer, Options, OptionsError, Stage};
 use crate::model::Model;
-use crate::size::Prediction;
+use crate::size::{Expression, ExpressionError, Prediction};
 use crate::structured::{GridMethod, GridStats};
 use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
@@ -37,7 +37,8 @@ use lift::Weld;
 use outline::{Outline, ROUNDING, Rim};
 use patch::{Draft, PatchMesh};
 use rayon::prelude::*;
-use sizing::Curvature;
+use sizing::{Curvature, Own};
+use std::sync::OnceLock;
 use structured::Quarters;
 
 pub use structured::PatchGridError;
@@ -149,6 +150,17 @@ pub enum SurfaceMeshError {
         /// Front edges left.
         edges: usize,
     },
+    /// The gradation function is none for surfaces.
+    #[error("gradation: {0}")]
+    Gradation(#[from] ExpressionError),
+    /// The gradation function's value is no spacing.
+    #[error("the gradation gives {value} at {at:?}: a spacing must be positive and finite")]
+    NoSpacing {
+        /// Its value.
+        value: f64,
+        /// Where.
+        at: Vector,
+    },
     /// A patch has no structured grid.
     #[error(transparent)]
     Grid(#[from] PatchGridError),
@@ -259,6 +271,7 @@ fn mesh_once(
     }
     let drafts = plan.drafts(model, &rims)?;
 
+    plan.demand_spacings()?;
     observer.stage(Stage::Size);
     let limit = options.common.triangles_max;
     let predictions = predict_all(&drafts, limit)?;
@@ -279,6 +292,7 @@ fn mesh_once(
             patches.iter().map(|patch: &PatchMesh| patch.mesh.triangles().count()).sum();
         patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
     }
+    plan.demand_spacings()?;
     let excess = plan.excess(&patches);
     for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
@@ -359,14 +373,18 @@ impl Plan {
             return Err(SurfaceMeshError::Empty);
         }
         let diagonal = model.diagonal();
-        let curvature = Curvature {
+        let mut curvature = Curvature {
             chord_error: options.chord_error.or(model.chord_error),
             angle: options.angle_per_edge_deg.or(model.angle_per_edge_deg).map(f64::to_radians),
             floor: CURVATURE_FLOOR * diagonal,
+            own: None,
         };
+        let own = own_gradation(options)?;
         let given = options.common.spacing.or(model.spacing);
-        let fraction = if curvature.is_on() { DEFAULT_SPACING_CURVED } else { DEFAULT_SPACING };
+        let is_curved = curvature.is_on() || own.is_some();
+        let fraction = if is_curved { DEFAULT_SPACING_CURVED } else { DEFAULT_SPACING };
         let spacing = given.unwrap_or(fraction * diagonal);
+        curvature.own = own.map(|expression| Own { expression, spacing, fault: OnceLock::new() });
         let cap = if given.is_some() || outline.needs_default() { spacing } else { f64::INFINITY };
         let growth = options.common.growth;
         let mut sources = Vec::new();
@@ -385,6 +403,12 @@ impl Plan {
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
         Ok(Self { outline, field, curvature, tolerances: [tolerance, off] })
+    }
+
+    /// Whether the user's own function gave a spacing wherever it was asked.
+    fn demand_spacings(&self) -> Result<(), SurfaceMeshError> {
+        let fault = self.curvature.own.as_ref().and_then(|own| own.fault.get());
+        fault.map_or(Ok(()), |&(value, at)| Err(SurfaceMeshError::NoSpacing { value, at }))
     }
 
     /// What is told of a run before its first triangle.
@@ -459,7 +483,7 @@ impl Plan {
         SurfaceChart {
             sheet: Sheet::new(&self.outline.pieces[piece].surface),
             field: &self.field,
-            curvature: self.curvature,
+            curvature: &self.curvature,
         }
     }
 
@@ -469,6 +493,16 @@ impl Plan {
             Draft::new(self.chart(i), rim, &self.outline.points, name)
         };
         rims.iter().enumerate().map(draft).collect()
+    }
+}
+
+/// The gradation function of the options, if they have one that surfaces can use.
+fn own_gradation(options: &SurfaceOptions) -> Result<Option<Expression>, ExpressionError> {
+    match &options.common.gradation {
+        Gradation::Expression(expression) => {
+            expression.demand_surface().map(|()| Some(expression.clone()))
+        }
+        _ => Ok(None),
     }
 }
 

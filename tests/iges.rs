@@ -48,7 +48,8 @@ fn boundary_edges(meshed: &SurfaceMeshed) -> usize {
 #[test]
 fn a_rational_surface_is_the_one_that_was_written() {
     let (rows, weights) = net();
-    let knots = [vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 2.0, 2.0, 2.0]];
+    let knots =
+        [vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 2.0, 2.0, 2.0]];
     let wanted = Tensor::new([3, 2], knots.clone(), &rows, &weights).expect("a surface");
     let mut file = Writer::default();
     file.surface([3, 2], &knots, (&rows, &weights), [[0.0, 1.0], [0.0, 2.0]]);
@@ -72,7 +73,8 @@ fn a_rational_surface_is_the_one_that_was_written() {
 fn delimiters_line_ends_and_exponents_are_the_files_own() {
     let mut file = Writer::default();
     let (rows, weights) = net();
-    let knots = [vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 2.0, 2.0, 2.0]];
+    let knots =
+        [vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 2.0, 2.0, 2.0]];
     file.surface([3, 2], &knots, (&rows, &weights), [[0.0, 1.0], [0.0, 2.0]]);
     let plain = model(&file);
     let other = Writer { delimiters: ['/', '#'], line_end: "\r\n", exponent: 'D', ..file };
@@ -95,7 +97,11 @@ fn every_curve_ends_where_it_should() {
     file.form = 12;
     let dots = file.add_moved(106, "2,2,0,2,0,0,1,0", shift);
     file.form = 0;
-    let spline = file.add_moved(126, "2,2,1,0,1,0,0,0,0,1,1,1,1,1,1,0,1,0,-0.5,0.5,0,0,0,0,0,1,0,0,1", shift);
+    let spline = file.add_moved(
+        126,
+        "2,2,1,0,1,0,0,0,0,1,1,1,1,1,1,0,1,0,-0.5,0.5,0,0,0,0,0,1,0,0,1",
+        shift,
+    );
     let all = file.add(102, &format!("5,{line},{arc},{polyline},{dots},{spline}"));
     let ring = file.add(142, &format!("0,{plane},0,{all},2"));
     file.add(144, &format!("{plane},1,0,{ring}"));
@@ -109,7 +115,8 @@ fn every_curve_ends_where_it_should() {
             TrimCurve::Parameters { .. } => panic!("no curve in space"),
         })
         .collect();
-    let corners = [[10.0, 20.0], [12.0, 20.0], [12.0, 22.0], [10.0, 22.0], [10.0, 21.0], [10.0, 20.0]];
+    let corners =
+        [[10.0, 20.0], [12.0, 20.0], [12.0, 22.0], [10.0, 22.0], [10.0, 21.0], [10.0, 20.0]];
     for (i, [from, to]) in ends.iter().enumerate() {
         for (found, [x, y]) in [(from, corners[i]), (to, corners[i + 1])] {
             assert!(distance(*found, [x, y, 30.0]) < 1e-12, "{i}: {found:?}");
@@ -345,7 +352,12 @@ fn a_rational_tube_with_a_hole_is_one_smooth_patch() {
     let mut file = Writer::default();
     let sheet = file.surface([2, 1], &knots, (&rows, &weights), [[0.0, 1.0], [0.0, 1.0]]);
     // A hole across the line u = 1/4, where the knots are double, in (u, v) alone.
-    let corners = ["0.2,0.3,0,0.3,0.3,0", "0.3,0.3,0,0.3,0.7,0", "0.3,0.7,0,0.2,0.7,0", "0.2,0.7,0,0.2,0.3,0"];
+    let corners = [
+        "0.2,0.3,0,0.3,0.3,0",
+        "0.3,0.3,0,0.3,0.7,0",
+        "0.3,0.7,0,0.2,0.7,0",
+        "0.2,0.7,0,0.2,0.3,0",
+    ];
     let curves = corners.map(|ends| file.add(110, ends).to_string());
     let all = file.add(102, &format!("4,{}", curves.join(",")));
     let ring = file.add(142, &format!("0,{sheet},{all},0,1"));

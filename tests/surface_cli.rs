@@ -227,8 +227,7 @@ fn an_iges_file_is_meshed_checked_and_welded() {
     assert!(told.contains("lengths are in millimetres") && told.contains("closed"), "{told}");
     let told = assert_exit(&run(&["check", &mesh, "--surface", &model, "--closed"]), 0);
     assert!(told.contains("Euler number 2, closed"), "{told}");
-    let welded =
-        ["mesh", &model, "--spacing", "0.3", "--weld", "1e-4", "--json", "-o", &mesh];
+    let welded = ["mesh", &model, "--spacing", "0.3", "--weld", "1e-4", "--json", "-o", &mesh];
     let output = run(&welded);
     assert_exit(&output, 0);
     let told: Value = serde_json::from_slice(&output.stdout).expect("JSON");

@@ -201,7 +201,8 @@ pub struct MeshOptions {
     pub density: Density,
     /// How spacing spreads from the boundary into the domain: growth, mean, third, uniform, or an
     /// expression such as `a*L1 + b*L2 + c*L3` of a, b, c, L1, L2, L3, x, y and H, the growth field
-    /// (with `--method direct` of D1, D2, L1, L2, x, y and H).
+    /// (with `--method direct` of D1, D2, L1, L2, x, y and H); on surface models an expression of x, y,
+    /// z, the principal curvatures k1 and k2, the area element J of the patch, and H, the spacing.
     #[arg(long, value_name = "NAME|EXPR", default_value = "growth", value_parser = parse_gradation)]
     #[arg(allow_hyphen_values = true)]
     pub gradation: mesher::Gradation,

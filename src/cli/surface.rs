@@ -173,6 +173,8 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
         | SurfaceMeshError::Stuck { .. }
         | SurfaceMeshError::TooMany { .. }
         | SurfaceMeshError::Front(_)
+        | SurfaceMeshError::Gradation(_)
+        | SurfaceMeshError::NoSpacing { .. }
         | SurfaceMeshError::Options(_) => Failure::cannot_run(diagnostic),
     }
 }

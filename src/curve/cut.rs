@@ -87,7 +87,8 @@ impl Curve {
     #[must_use]
     pub fn with_ends(&self, ends: [Vector; 2]) -> Self {
         let last = self.points.len() - 1;
-        let is_clamped = |at: Vector, i: usize| crate::vector::key(at) == crate::vector::key(self.points[i]);
+        let is_clamped =
+            |at: Vector, i: usize| crate::vector::key(at) == crate::vector::key(self.points[i]);
         let found = self.ends();
         let mut points = self.points.clone();
         if is_clamped(found[0], 0) {
@@ -117,7 +118,11 @@ mod tests {
     // spec: S1
     #[test]
     fn a_part_is_the_same_curve_between_its_ends() {
-        for curve in [wave(false), wave(true), Curve::periodic(3, wave(false).points().to_vec()).expect("closed")] {
+        for curve in [
+            wave(false),
+            wave(true),
+            Curve::periodic(3, wave(false).points().to_vec()).expect("closed"),
+        ] {
             let [start, end] = curve.domain();
             for [a, b] in [[0.0, 1.0], [0.1, 0.7], [0.25, 1.0], [0.5, 0.55], [0.0, 0.5]] {
                 let range = [a, b].map(|part: f64| start + part * (end - start));

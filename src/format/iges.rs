@@ -185,7 +185,8 @@ impl<'a> Reader<'a> {
         let what = "a matrix";
         let index = self.index(pointer, what)?;
         if self.entities[index].kind != 124 {
-            let text = format!("the entity's matrix is of type {}, not 124", self.entities[index].kind);
+            let text =
+                format!("the entity's matrix is of type {}, not 124", self.entities[index].kind);
             return Err(Problem::Entity(text).at(self.entities[index].place()));
         }
         self.enter(pointer, what, &Affine::IDENTITY, |_, fields, outer| {

@@ -21,12 +21,8 @@ pub enum ModelForm {
 
 impl ModelForm {
     /// All forms with the names that `--from` takes.
-    pub const ALL: [(Self, &'static str); 4] = [
-        (Self::Json, "model"),
-        (Self::Bpt, "bpt"),
-        (Self::Nurbs, "nurbs"),
-        (Self::Iges, "iges"),
-    ];
+    pub const ALL: [(Self, &'static str); 4] =
+        [(Self::Json, "model"), (Self::Bpt, "bpt"), (Self::Nurbs, "nurbs"), (Self::Iges, "iges")];
 
     /// The form of this name.
     #[must_use]

@@ -2,8 +2,8 @@
 
 use crate::format::assemble::{Assembler, Cell};
 use crate::format::error::{ReadError, ReadFault, WriteError};
-use crate::format::msh_view;
 use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, TRIANGLE};
+use crate::format::msh_view;
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
 use crate::format::view::MeshView;

@@ -70,9 +70,8 @@ impl Known {
     fn point(&mut self, p: Vector) -> usize {
         let [x, y, z] = self.cube(p);
         let beside = |x: i64| x.saturating_sub(1)..=x.saturating_add(1);
-        let mut near = beside(x).flat_map(|x| {
-            beside(y).flat_map(move |y| beside(z).map(move |z| [x, y, z]))
-        });
+        let mut near =
+            beside(x).flat_map(|x| beside(y).flat_map(move |y| beside(z).map(move |z| [x, y, z])));
         let found = near.find_map(|cube| {
             let list = self.cubes.get(&cube)?;
             list.iter().copied().find(|&i| distance(self.points[i], p) <= self.tolerance)
@@ -132,10 +131,8 @@ mod tests {
     use crate::surface::{Surface, Tensor};
 
     fn square(x: f64) -> Surface {
-        let rows = [
-            vec![[x, 0.0, 0.0], [x, 1.0, 0.0]],
-            vec![[x + 1.0, 0.0, 0.0], [x + 1.0, 1.0, 0.0]],
-        ];
+        let rows =
+            [vec![[x, 0.0, 0.0], [x, 1.0, 0.0]], vec![[x + 1.0, 0.0, 0.0], [x + 1.0, 1.0, 0.0]]];
         Surface::Tensor(Tensor::bezier(&rows).expect("a square"))
     }
 
@@ -179,7 +176,8 @@ mod tests {
     // spec: S25
     #[test]
     fn curves_farther_apart_stay_as_they_are() {
-        for (off, tolerance) in [(1e-3, 1e-6), (1e-7, 0.0), (1e-7, f64::NAN), (1e-7, f64::INFINITY)] {
+        for (off, tolerance) in [(1e-3, 1e-6), (1e-7, 0.0), (1e-7, f64::NAN), (1e-7, f64::INFINITY)]
+        {
             let mut model = two(off);
             model.weld(tolerance);
             assert_eq!(curve(&model, 0, 1).same_as(&curve(&model, 1, 3)), None, "{tolerance}");

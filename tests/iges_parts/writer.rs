@@ -80,9 +80,10 @@ impl Writer {
         ranges: [[f64; 2]; 2],
     ) -> usize {
         let counts = [rows.len(), rows[0].len()];
-        let mut list: Vec<String> = [counts[0] - 1, counts[1] - 1, degrees[0], degrees[1], 0, 0, 0, 0, 0]
-            .map(|n| n.to_string())
-            .to_vec();
+        let mut list: Vec<String> =
+            [counts[0] - 1, counts[1] - 1, degrees[0], degrees[1], 0, 0, 0, 0, 0]
+                .map(|n| n.to_string())
+                .to_vec();
         let order = || (0..counts[1]).flat_map(|j| (0..counts[0]).map(move |i| (i, j)));
         let numbers = knots.iter().flatten().copied();
         let numbers = numbers.chain(order().map(|(i, j)| weights[i][j]));
@@ -118,7 +119,12 @@ impl Writer {
         };
         let rest = "4Hpart,6Hpa,rt;,4Htest,1H1,32,38,6,308,15,4Hpart,1.,2,2HMM,1,0.01,15H20000101.000000,1E-7,10.,2Hme,2Hus,11,0,15H20000101.000000";
         // Strings may hold what separates fields elsewhere.
-        global.push_str(&rest.replace("6Hpa,rt;", "6Hpa?rt!").replace(',', &comma.to_string()).replace("pa?rt!", "pa,rt;"));
+        global.push_str(
+            &rest
+                .replace("6Hpa,rt;", "6Hpa?rt!")
+                .replace(',', &comma.to_string())
+                .replace("pa?rt!", "pa,rt;"),
+        );
         global.push(end);
         let (mut directory, mut parameters) = (Vec::new(), Vec::new());
         for (i, entity) in self.entities.iter().enumerate() {
@@ -129,7 +135,10 @@ impl Writer {
             }
             let status = if entity.is_part { "00010000" } else { "00000000" };
             let Entity { kind, form, matrix, .. } = entity;
-            directory.push(format!("{kind:>8}{first:>8}{0:>8}{0:>8}{0:>8}{0:>8}{matrix:>8}{0:>8}{status}", 0));
+            directory.push(format!(
+                "{kind:>8}{first:>8}{0:>8}{0:>8}{0:>8}{0:>8}{matrix:>8}{0:>8}{status}",
+                0
+            ));
             let count = parameters.len() + 1 - first;
             directory.push(format!("{kind:>8}{0:>8}{0:>8}{count:>8}{form:>8}{1:>32}", 0, ""));
         }
@@ -139,7 +148,9 @@ impl Writer {
         let [s, g, d, p] = counts;
         let last = vec![format!("S{s:07}G{g:07}D{d:07}P{p:07}")];
         let mut text = String::new();
-        for (letter, lines) in [('S', start), ('G', global), ('D', directory), ('P', parameters), ('T', last)] {
+        for (letter, lines) in
+            [('S', start), ('G', global), ('D', directory), ('P', parameters), ('T', last)]
+        {
             for (i, line) in lines.iter().enumerate() {
                 write!(text, "{line:<72}{letter}{:07}{}", i + 1, self.line_end).expect("memory");
             }
@@ -156,7 +167,8 @@ fn chunks(text: &str, width: usize) -> Vec<String> {
 /// `off` from those of its neighbours.
 pub fn cube(file: &mut Writer, off: f64) {
     let p = |i: u32| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)];
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let planes = ["0,0,1,0", "0,0,1,1", "0,1,0,0", "0,1,0,1", "1,0,0,0", "1,0,0,1"];
     for (k, (face, plane)) in faces.into_iter().zip(planes).enumerate() {
         let corners = face.map(|i| {
@@ -174,7 +186,12 @@ pub fn tube(file: &mut Writer) {
     let sheet = file.add(120, &format!("{axis},{profile},0.,6.283185307"));
     let upper = file.add(124, "1,0,0,0,0,1,0,0,0,0,1,2");
     // South: the seam; west and east: circles.
-    let flats = ["0,0,0,1,0,0", "1,0,0,1,6.283185307,0", "1,6.283185307,0,0,6.283185307,0", "0,6.283185307,0,0,0,0"];
+    let flats = [
+        "0,0,0,1,0,0",
+        "1,0,0,1,6.283185307,0",
+        "1,6.283185307,0,0,6.283185307,0",
+        "0,6.283185307,0,0,0,0",
+    ];
     let flats = flats.map(|ends| file.add(110, ends).to_string());
     let seam = file.add(110, "1,0,0,1,0,2");
     let top = file.add_moved(100, "0,0,0,1,0,1,0", upper);

@@ -44,7 +44,8 @@ impl Reader<'_> {
         let ([flat, space], line, map) = self.enter(pointer, what, outer, |_, fields, map| {
             fields.int("how the curve was made")?;
             fields.int("a pointer to the surface")?;
-            let pointers = [fields.int("a pointer to a curve")?, fields.int("a pointer to a curve")?];
+            let pointers =
+                [fields.int("a pointer to a curve")?, fields.int("a pointer to a curve")?];
             if pointers == [0, 0] {
                 let text = "a curve on a surface has neither a curve of (u, v) nor one in space";
                 return Err(fields.fail(Problem::Entity(text.to_owned())));
@@ -148,7 +149,8 @@ pub(super) fn cut(base: &mut Base, mut rings: Vec<Ring>, has_outline: bool) -> R
             let plain = Reading { is_swapped: false, turn: 0.0 };
             let is_exact = !base.u_turns || base.ranges == base.surface.domain();
             if !is_exact {
-                let text = "a boundary of a surface of revolution of an arc needs its curves in space";
+                let text =
+                    "a boundary of a surface of revolution of an arc needs its curves in space";
                 let place = crate::domain::Place::Line(line);
                 return Err(Problem::Entity(text.to_owned()).at(place));
             }
@@ -164,7 +166,8 @@ pub(super) fn cut(base: &mut Base, mut rings: Vec<Ring>, has_outline: bool) -> R
             ring.flat.clear();
         }
     }
-    let is_whole = has_outline && rings.first().is_some_and(|ring| goes_around(&base.surface, &ring.flat));
+    let is_whole =
+        has_outline && rings.first().is_some_and(|ring| goes_around(&base.surface, &ring.flat));
     let mut loops = rings.into_iter().map(curves);
     let outline = if has_outline { loops.next().filter(|_| !is_whole) } else { None };
     let trim = Trim { outline, holes: loops.collect() };
@@ -177,13 +180,11 @@ pub(super) fn cut(base: &mut Base, mut rings: Vec<Ring>, has_outline: bool) -> R
 
 /// The reading of the curves of (u, v) that brings them nearest to their curves in space.
 fn best_reading(base: &Base, rings: &[Ring]) -> Option<Reading> {
-    let pairs = || {
-        rings.iter().filter(|ring| ring.is_paired()).flat_map(|r| r.flat.iter().zip(&r.space))
-    };
+    let pairs =
+        || rings.iter().filter(|ring| ring.is_paired()).flat_map(|r| r.flat.iter().zip(&r.space));
     let turns: &[f64] = if base.u_turns { &[0.0, -TAU, TAU] } else { &[0.0] };
-    let all = turns.iter().flat_map(|&turn| {
-        [false, true].map(|is_swapped| Reading { is_swapped, turn })
-    });
+    let all =
+        turns.iter().flat_map(|&turn| [false, true].map(|is_swapped| Reading { is_swapped, turn }));
     let off = |reading: Reading| -> f64 {
         let of = |(flat, space): (&Curve, &Curve)| {
             let flat = reading.apply(base, flat);
@@ -205,9 +206,8 @@ fn best_reading(base: &Base, rings: &[Ring]) -> Option<Reading> {
 fn is_inside(surface: &Surface, flat: &Curve) -> bool {
     let domain = surface.domain();
     let slack = |i: usize| ON_SIDE * (domain[i][1] - domain[i][0]);
-    let holds = |p: &Vector, i: usize| {
-        p[i] >= domain[i][0] - slack(i) && p[i] <= domain[i][1] + slack(i)
-    };
+    let holds =
+        |p: &Vector, i: usize| p[i] >= domain[i][0] - slack(i) && p[i] <= domain[i][1] + slack(i);
     flat.points().iter().all(|p| holds(p, 0) && holds(p, 1))
 }
 

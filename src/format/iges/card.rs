@@ -90,7 +90,8 @@ fn letter(text: &[u8], line: u64) -> Read<(usize, Option<u64>)> {
     match LETTERS.iter().position(|letter| letter == found) {
         Some(section) => Ok((section, whole(text.get(DATA + 1..80).unwrap_or_default()))),
         None if matches!(found, b'C' | b'B') && line == 1 => {
-            let message = "compressed and binary IGES files are not read: export fixed-length ASCII";
+            let message =
+                "compressed and binary IGES files are not read: export fixed-length ASCII";
             Err(Problem::Entity(message.to_owned()).at(Place::Line(line)))
         }
         None => Err(expected(what, text, line)),
@@ -150,8 +151,7 @@ impl Global {
         let (end, at) = self::delimiter(&text, at, delimiter, b';')
             .filter(|(end, _)| *end != delimiter)
             .ok_or_else(|| wrong("the delimiter of records, such as `1H;,`"))?;
-        let ranges = split(&text[at..], delimiter, end)
-            .map_err(|what| wrong(what))?;
+        let ranges = split(&text[at..], delimiter, end).map_err(|what| wrong(what))?;
         // The delimiters were parameters 1 and 2.
         let field = |number: usize| {
             ranges.get(number - 3).map_or(&b""[..], |range| trimmed(&text[at..], range))
@@ -173,7 +173,8 @@ fn delimiter(text: &[u8], at: usize, separator: u8, default: u8) -> Option<(u8, 
         return Some((default, at + 1));
     }
     let &[b'1', b'H', found, next] = text.get(at..at + 4)? else { return None };
-    let may = !found.is_ascii_alphanumeric() && found.is_ascii_graphic() && !b"+-.".contains(&found);
+    let may =
+        !found.is_ascii_alphanumeric() && found.is_ascii_graphic() && !b"+-.".contains(&found);
     let is_first = at == 0;
     let after = if is_first { found } else { separator };
     (may && (next == after || (!is_first && next == found))).then_some((found, at + 4))

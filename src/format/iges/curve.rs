@@ -80,7 +80,8 @@ fn arc(fields: &mut Fields, resolution: f64) -> Read<Piece> {
     let start = angle(from);
     let radius = distance(centre, from);
     if distance(from, to) <= resolution.min(1e-3 * radius) {
-        let curve = Curve::circle(centre, [0.0, 0.0, 1.0], from).map_err(|e| fields.fail(e.into()))?;
+        let curve =
+            Curve::circle(centre, [0.0, 0.0, 1.0], from).map_err(|e| fields.fail(e.into()))?;
         return Ok(Piece { curve, range: [start, start + TAU], turns: true });
     }
     let end = if angle(to) > start { angle(to) } else { angle(to) + TAU };

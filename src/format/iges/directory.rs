@@ -1,8 +1,8 @@
 //! The directory of an IGES file: two lines an entity.
 
 use super::super::domain_file::Problem;
-use super::card::{Card, expected};
 use super::Read;
+use super::card::{Card, expected};
 use crate::domain::Place;
 
 /// An entity as its directory has it.
@@ -37,7 +37,8 @@ pub(super) fn read(cards: &[Card], parameters: usize) -> Read<Vec<Entity>> {
             let entity = entity(&pair[0], &pair[1])?;
             let [first, count] = entity.lines;
             claimed += count;
-            if entity.kind != 0 && (first + count > parameters || count == 0 || claimed > parameters)
+            if entity.kind != 0
+                && (first + count > parameters || count == 0 || claimed > parameters)
             {
                 let what = "a range of parameter lines that the file has, none of them twice";
                 return Err(expected(what, &pair[0].data[..16], entity.line));

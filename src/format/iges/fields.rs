@@ -14,7 +14,11 @@ const DATA: usize = 64;
 ///
 /// # Errors
 /// What is missing.
-pub(super) fn split(text: &[u8], delimiter: u8, end: u8) -> Result<Vec<Range<usize>>, &'static str> {
+pub(super) fn split(
+    text: &[u8],
+    delimiter: u8,
+    end: u8,
+) -> Result<Vec<Range<usize>>, &'static str> {
     let mut ranges = Vec::new();
     let mut at = 0;
     loop {

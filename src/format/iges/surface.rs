@@ -33,14 +33,13 @@ impl Reader<'_> {
     ) -> Read<Base> {
         let entity = self.entities[self.index(pointer, "a pointer to a surface")?];
         match entity.kind {
-            108 => self.enter(pointer, "a plane", outer, |_, fields, map| {
-                plane(fields, map, points)
-            }),
+            108 => {
+                self.enter(pointer, "a plane", outer, |_, fields, map| plane(fields, map, points))
+            }
             120 => self.revolution(pointer, outer),
             122 => self.cylinder(pointer, outer),
-            128 => self.enter(pointer, "a B-spline surface", outer, |_, fields, map| {
-                spline(fields, map)
-            }),
+            128 => self
+                .enter(pointer, "a B-spline surface", outer, |_, fields, map| spline(fields, map)),
             kind => {
                 let text = format!(
                     "a surface of type {kind} is not read: B-splines (128), surfaces of revolution (120), tabulated cylinders (122) and planes (108) are"
@@ -52,15 +51,17 @@ impl Reader<'_> {
 
     fn revolution(&mut self, pointer: i64, outer: &Affine) -> Read<Base> {
         let what = "a surface of revolution";
-        let ([axis, profile], angles, map) = self.enter(pointer, what, outer, |_, fields, map| {
-            let pointers = [fields.int("a pointer to the axis")?, fields.int("a pointer")?];
-            let angle = "an angle of revolution";
-            Ok((pointers, [fields.real(angle)?, fields.real(angle)?], *map))
-        })?;
+        let ([axis, profile], angles, map) =
+            self.enter(pointer, what, outer, |_, fields, map| {
+                let pointers = [fields.int("a pointer to the axis")?, fields.int("a pointer")?];
+                let angle = "an angle of revolution";
+                Ok((pointers, [fields.real(angle)?, fields.real(angle)?], *map))
+            })?;
         let place = self.entities[self.index(pointer, what)?].place();
-        let (axis, Piece { curve: profile, range, turns: u_turns }) = self.within(pointer, |reader| {
-            Ok((reader.single(axis, &map)?, reader.single(profile, &map)?))
-        })?;
+        let (axis, Piece { curve: profile, range, turns: u_turns }) = self
+            .within(pointer, |reader| {
+                Ok((reader.single(axis, &map)?, reader.single(profile, &map)?))
+            })?;
         if !map.is_rigid() {
             let text = "a surface of revolution is stretched by its matrix".to_owned();
             return Err(Problem::Entity(text).at(place));
@@ -122,10 +123,8 @@ fn spline(fields: &mut Fields, map: &Affine) -> Read<Base> {
         fields.count("the number of control points along u, less one", 1, 4)? + 1,
         fields.count("the number of control points along v, less one", 1, 4)? + 1,
     ];
-    let degrees = [
-        fields.count("the degree along u", 1, 1)?,
-        fields.count("the degree along v", 1, 1)?,
-    ];
+    let degrees =
+        [fields.count("the degree along u", 1, 1)?, fields.count("the degree along v", 1, 1)?];
     for _ in 0..5 {
         fields.int("a property of a B-spline")?;
     }

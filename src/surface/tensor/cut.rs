@@ -125,7 +125,8 @@ mod tests {
         let whole = bumps();
         assert!(!whole.is_clamped());
         let [[u0, u1], [v0, v1]] = whole.domain();
-        for ranges in [[[u0, u1], [v0, v1]], [[2.5, 4.0], [3.0, 5.75]], [[3.0, 3.25], [4.5, 4.75]]] {
+        for ranges in [[[u0, u1], [v0, v1]], [[2.5, 4.0], [3.0, 5.75]], [[3.0, 3.25], [4.5, 4.75]]]
+        {
             let part = whole.part(ranges).expect("a part");
             assert!(part.is_clamped() && part.domain() == ranges);
             for k in 0..81_u32 {
