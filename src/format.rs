@@ -389,6 +389,10 @@ pub fn write_mesh(
     if !form.has_encoding(options.encoding) {
         return Err(WriteError::Encoding { form, encoding: options.encoding.name() });
     }
+    use MeshForm::{Msh, Obj, Off, Su2, VtkLegacy, Vtu};
+    if mesh.has_quads() && !matches!(form, Msh | Vtu | VtkLegacy | Off | Obj | Su2) {
+        return Err(WriteError::Carry { form, what: "the quadrilaterals of a grid" });
+    }
     let mut text = TextOut::new(out);
     match form {
         MeshForm::Msh if options.msh_version == MshVersion::V22 => {

@@ -259,3 +259,58 @@ fn step_files_are_refused_with_what_to_do_instead() {
         }
     }
 }
+
+// spec: K39
+#[test]
+fn grids_of_domains_and_models_are_written_as_quadrilaterals() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let square = text(&folder.path().join("square.json"));
+    let points = "[[0,0],[1,0],[2,0],[2,1],[2,2],[1,2],[0,2],[0,1]]";
+    std::fs::write(&square, format!(r#"{{"outer": {points}}}"#)).expect("writable");
+    let mesh = |name: &str| text(&folder.path().join(name));
+    let grid = ["--method", "elliptic", "--corners", "0,2,4,6", "--quads"];
+    for name in ["a.msh", "a.vtu", "a.vtk", "a.off", "a.obj", "a.su2"] {
+        let out = mesh(name);
+        let all = [&["mesh", &square, "-o", &out][..], &grid].concat();
+        assert_exit(&run(&all), 0);
+        let told = assert_exit(&run(&["check", &out, "--split-quads", "--domain", &square]), 0);
+        assert!(told.contains("8 triangles, 9 points"), "{told}");
+        assert_exit(&run(&["check", &out, "--domain", &square]), 2);
+    }
+    for (name, more, exit, word) in [
+        ("a.stl", &grid[..], 2, "cannot carry the quadrilaterals"),
+        ("b.json", &grid[..], 2, "cannot carry the quadrilaterals"),
+        ("c.vtu", &["--quads"][..], 2, "transfinite or elliptic only"),
+    ] {
+        let out = mesh(name);
+        let told = assert_exit(&run(&[&["mesh", &square, "-o", &out][..], more].concat()), exit);
+        assert!(told.contains(word), "{told}");
+        assert!(name == "a.stl" || !Path::new(&out).exists(), "{out}");
+    }
+    let model = mesh("patch.json");
+    let bent = r#"{"patches": [{"kind": "bezier", "net": [[[0,0,0],[0,1,1],[0,2,0]], [[2,0,0],[2,1,1],[2,2,0]]]}]}"#;
+    std::fs::write(&model, bent).expect("writable");
+    let out = mesh("patch.vtu");
+    let all =
+        ["mesh", &model, "--spacing", "0.5", "--method", "transfinite", "--quads", "-o", &out];
+    assert_exit(&run(&all), 0);
+    let check = ["check", &out, "--split-quads", "--surface", &model];
+    assert_exit(&run(&check), 0);
+    assert_exit(
+        &run(&check.map(|word| if word == "--split-quads" { "--timings" } else { word })),
+        1,
+    );
+}
+
+// spec: W10
+#[test]
+fn a_cell_that_is_not_convex_is_no_quadrilateral() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let domain = text(&folder.path().join("arrow.json"));
+    std::fs::write(&domain, r#"{"outer": [[0,0],[2,0],[0.5,0.5],[0,2]]}"#).expect("writable");
+    let out = text(&folder.path().join("arrow.vtu"));
+    let all = ["mesh", &domain, "--method", "transfinite", "--corners", "0,1,2,3", "-o", &out];
+    assert_exit(&run(&all), 0);
+    let told = assert_exit(&run(&[&all[..], &["--quads"]].concat()), 1);
+    assert!(told.contains("1 cells of the grid are not convex") && told.contains("W10"), "{told}");
+}

@@ -250,6 +250,9 @@ pub struct MeshOptions {
     /// order; without it the four sharpest.
     #[arg(long, value_name = "I,J,K,L", value_parser = parse_corners)]
     pub corners: Option<[u32; 4]>,
+    /// Write the cells of a structured grid as quadrilaterals (.msh, .vtu, .vtk, .off, .obj, .su2).
+    #[arg(long)]
+    pub quads: bool,
     /// Allow new points on the boundary and on constraints: where --min-angle demands them, and
     /// with the other methods where the spacing jumps or a gap is narrow.
     #[arg(long)]

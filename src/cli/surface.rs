@@ -11,6 +11,7 @@ use super::judged::{self, Judged, certify, judge, paths, read_back};
 use super::mesh_file::{self, Drawing};
 use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
+use super::quads;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, prediction, seconds};
 use super::words::{boundary, count};
@@ -93,6 +94,7 @@ pub fn run(
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
+    let quads = quads::wanted(&arguments.options)?;
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, model) = load_model(
@@ -117,9 +119,12 @@ pub fn run(
         summary.prediction = Some(predicted.map_err(|e| no_mesh(&e))?);
         return Ok(summary.outcome(&watch.finish(), arguments.timings));
     }
-    let meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    let mut meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    if quads {
+        quads::pair(&mut meshed.mesh.triangles, None)?;
+    }
     watch.begin("write");
-    write_all(&mut outputs, &files, &meshed)?;
+    write_all(&mut outputs, &files, (&meshed, quads))?;
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
@@ -182,10 +187,11 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
 fn write_all(
     outputs: &mut Outputs,
     files: &[OutputFile],
-    meshed: &SurfaceMeshed,
+    (meshed, quads): (&SurfaceMeshed, bool),
 ) -> Result<(), Failure> {
     let drawing = Drawing::of(&meshed.mesh, "");
     let view = MeshView::from(&meshed.mesh).with_parameters(&meshed.parameters);
+    let view = quads::view(view, quads);
     for (i, file) in files.iter().enumerate() {
         mesh_file::write(outputs, i, file, view, &drawing)?;
     }

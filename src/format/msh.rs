@@ -59,7 +59,8 @@ const ELEMENT_TYPES: [(i64, usize, &str); 38] = [
 pub(crate) const LINE: i64 = 1;
 /// Gmsh's code of a 3-node triangle.
 pub(crate) const TRIANGLE: i64 = 2;
-const QUADRILATERAL: i64 = 3;
+/// Gmsh's code of a 4-node quadrilateral.
+pub(crate) const QUADRILATERAL: i64 = 3;
 
 /// How numbers stand in the file: as text, or binary with an order of bytes.
 #[derive(Clone, Copy, Debug)]
