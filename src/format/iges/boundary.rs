@@ -244,12 +244,12 @@ fn goes_around(surface: &Surface, flat: &[Curve]) -> bool {
     for curve in flat {
         // South and north have v constant, east and west u.
         let along = |k: usize| {
-            let i = if k % 2 == 0 { 1 } else { 0 };
+            let i = 1 - k % 2;
             let level = if k == 1 || k == 2 { domain[i][1] } else { domain[i][0] };
             curve.points().iter().all(|p| (p[i] - level).abs() <= ON_SIDE * length(i))
         };
         let Some(k) = (0..4).find(|&k| along(k)) else { return false };
-        let i = if k % 2 == 0 { 0 } else { 1 };
+        let i = k % 2;
         let [from, to] = curve.ends();
         covered[k] += (to[i] - from[i]).abs() / length(i);
     }

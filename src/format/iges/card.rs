@@ -151,7 +151,7 @@ impl Global {
         let (end, at) = self::delimiter(&text, at, delimiter, b';')
             .filter(|(end, _)| *end != delimiter)
             .ok_or_else(|| wrong("the delimiter of records, such as `1H;,`"))?;
-        let ranges = split(&text[at..], delimiter, end).map_err(|what| wrong(what))?;
+        let ranges = split(&text[at..], delimiter, end).map_err(wrong)?;
         // The delimiters were parameters 1 and 2.
         let field = |number: usize| {
             ranges.get(number - 3).map_or(&b""[..], |range| trimmed(&text[at..], range))
