@@ -1,6 +1,6 @@
 //! IGES files against surfaces known otherwise, and files that lie.
 
-#[path = "iges_parts/writer.rs"]
+#[path = "common/iges_writer.rs"]
 mod writer;
 
 use std::time::Instant;
