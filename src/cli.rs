@@ -19,6 +19,7 @@ pub mod outcome;
 pub mod output;
 pub mod plot;
 pub mod point_file;
+pub mod quads;
 pub mod refinement;
 pub mod remesh;
 pub mod size_file;

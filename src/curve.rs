@@ -6,6 +6,7 @@
 
 mod arc;
 pub mod basis;
+pub mod cut;
 pub mod discretize;
 
 use crate::vector::{Vector, add, along, key, scale, sub};

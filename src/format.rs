@@ -18,6 +18,7 @@ mod domain_json_plain;
 mod error;
 mod fort14;
 pub mod geojson;
+pub mod iges;
 mod medit;
 pub mod mesh_json;
 pub mod model_file;
@@ -25,6 +26,7 @@ pub mod model_json;
 mod msh;
 mod msh22;
 mod msh41;
+pub mod msh_view;
 mod netgen_vol;
 pub mod node_data;
 mod node_ele;
@@ -386,6 +388,10 @@ pub fn write_mesh(
     let is_binary = options.encoding == Encoding::Binary;
     if !form.has_encoding(options.encoding) {
         return Err(WriteError::Encoding { form, encoding: options.encoding.name() });
+    }
+    use MeshForm::{Msh, Obj, Off, Su2, VtkLegacy, Vtu};
+    if mesh.has_quads() && !matches!(form, Msh | Vtu | VtkLegacy | Off | Obj | Su2) {
+        return Err(WriteError::Carry { form, what: "the quadrilaterals of a grid" });
     }
     let mut text = TextOut::new(out);
     match form {

@@ -1,5 +1,7 @@
 //! Surface models: patches that share curves, as plain data exactly as the user gave it.
 
+mod weld;
+
 use crate::curve::Curve;
 use crate::curve::discretize::Rule;
 use crate::surface::Surface;
@@ -42,6 +44,12 @@ pub struct Model {
     pub trims: BTreeMap<usize, Trim>,
     /// Whether parts that share no curve may cross each other: a handle that runs into its pot.
     pub parts_may_cross: bool,
+    /// How far apart what is the same may be, where that is more than rounding: the ends of curves
+    /// of a loop, curves and the surfaces that they trim. The curves of (u, v) beside curves of space
+    /// then only say near which place these lie.
+    pub tolerance: Option<f64>,
+    /// What the reader wants to be told: the unit, what it left out.
+    pub notes: Vec<String>,
 }
 
 /// A patch of a model.

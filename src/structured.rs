@@ -23,9 +23,11 @@
 //! assert_eq!(grid.at(1, 1), Point2::new(0.5, 1.0));
 //! ```
 
+mod cells;
 mod transfinite;
 mod winslow;
 
+pub use cells::{concave_cells, pair_up};
 pub use transfinite::{fractions, transfinite};
 pub use winslow::{Relaxed, relax};
 

@@ -205,4 +205,15 @@ impl Surface {
             Self::Coons(_) => vec![self.clone()],
         }
     }
+
+    /// The same surface as one piece if its normal does not turn at the lines where it may have a
+    /// crease, as on a cylinder or a torus made of rational quarters; itself otherwise.
+    #[must_use]
+    pub fn joined(self) -> Self {
+        match self {
+            Self::Tensor(surface) => Self::Tensor(surface.joined()),
+            Self::Revolution(surface) => Self::Revolution(surface.joined()),
+            Self::Coons(_) => self,
+        }
+    }
 }

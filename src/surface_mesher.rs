@@ -27,9 +27,9 @@ mod trim;
 use crate::curve::discretize::DiscretizeError;
 use crate::front::{FrontError, FrontStats};
 use crate::mesh::MeshData;
-use crate::mesher::{Observer, Options, OptionsError, Stage};
+use crate::mesher::{Gradation, Observer, Options, OptionsError, Stage};
 use crate::model::Model;
-use crate::size::Prediction;
+use crate::size::{Expression, ExpressionError, Prediction};
 use crate::structured::{GridMethod, GridStats};
 use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
@@ -39,8 +39,9 @@ use lift::Weld;
 use outline::{Outline, ROUNDING, Rim};
 use patch::{Draft, PatchMesh};
 use rayon::prelude::*;
-use sizing::Curvature;
+use sizing::{Curvature, Own};
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 use structured::Quarters;
 
 pub use structured::PatchGridError;
@@ -151,6 +152,17 @@ pub enum SurfaceMeshError {
         at: Vector,
         /// Front edges left.
         edges: usize,
+    },
+    /// The gradation function is none for surfaces.
+    #[error("gradation: {0}")]
+    Gradation(#[from] ExpressionError),
+    /// The gradation function's value is no spacing.
+    #[error("the gradation gives {value} at {at:?}: a spacing must be positive and finite")]
+    NoSpacing {
+        /// Its value.
+        value: f64,
+        /// Where.
+        at: Vector,
     },
     /// A patch has no structured grid.
     #[error(transparent)]
@@ -264,6 +276,7 @@ fn mesh_once(
     }
     let drafts = plan.drafts(model, &rims)?;
 
+    plan.demand_spacings()?;
     observer.stage(Stage::Size);
     let limit = options.common.triangles_max;
     let predictions = predict_all(&drafts, limit)?;
@@ -284,6 +297,7 @@ fn mesh_once(
             patches.iter().map(|patch: &PatchMesh| patch.mesh.triangles().count()).sum();
         patches.extend(mesh_some(some, &options.common, &mut |n| observer.progress(done + n))?);
     }
+    plan.demand_spacings()?;
     let mut excess = plan.excess(&patches, &rims);
     if !excess.sources.is_empty() && (is_last || excess.is_local()) {
         plan.halve(&mut patches, &rims);
@@ -354,8 +368,8 @@ struct Plan {
     outline: Outline,
     field: SpaceField,
     curvature: Curvature,
-    /// How far off is rounding.
-    tolerance: f64,
+    /// How far off is the same, and how far off its surface no curve may be.
+    tolerances: [f64; 2],
 }
 
 impl Plan {
@@ -369,14 +383,18 @@ impl Plan {
             return Err(SurfaceMeshError::Empty);
         }
         let diagonal = model.diagonal();
-        let curvature = Curvature {
+        let mut curvature = Curvature {
             chord_error: options.chord_error.or(model.chord_error),
             angle: options.angle_per_edge_deg.or(model.angle_per_edge_deg).map(f64::to_radians),
             floor: CURVATURE_FLOOR * diagonal,
+            own: None,
         };
+        let own = own_gradation(options)?;
         let given = options.common.spacing.or(model.spacing);
-        let fraction = if curvature.is_on() { DEFAULT_SPACING_CURVED } else { DEFAULT_SPACING };
+        let is_curved = curvature.is_on() || own.is_some();
+        let fraction = if is_curved { DEFAULT_SPACING_CURVED } else { DEFAULT_SPACING };
         let spacing = given.unwrap_or(fraction * diagonal);
+        curvature.own = own.map(|expression| Own { expression, spacing, fault: OnceLock::new() });
         let cap = if given.is_some() || outline.needs_default() { spacing } else { f64::INFINITY };
         let growth = options.common.growth;
         let mut sources = Vec::new();
@@ -388,10 +406,19 @@ impl Plan {
         } else {
             outline.cut(|_| spacing)?;
         }
-        outline.number(ROUNDING * diagonal);
+        let same = model.tolerance.unwrap_or(0.0);
+        let tolerance = same.max(ROUNDING * diagonal);
+        let off = model.tolerance.map_or(trim::OFF * diagonal, |_| tolerance);
+        outline.number(tolerance);
         sources.extend(node_sources(&outline));
         let field = SpaceField::new(&sources, growth, cap);
-        Ok(Self { outline, field, curvature, tolerance: ROUNDING * diagonal })
+        Ok(Self { outline, field, curvature, tolerances: [tolerance, off] })
+    }
+
+    /// Whether the user's own function gave a spacing wherever it was asked.
+    fn demand_spacings(&self) -> Result<(), SurfaceMeshError> {
+        let fault = self.curvature.own.as_ref().and_then(|own| own.fault.get());
+        fault.map_or(Ok(()), |&(value, at)| Err(SurfaceMeshError::NoSpacing { value, at }))
     }
 
     /// What is told of a run before its first triangle.
@@ -466,7 +493,7 @@ impl Plan {
     fn rims(&self, model: &Model) -> Result<Vec<Rim>, SurfaceMeshError> {
         let around = |piece: &outline::Piece| {
             let name = model.patches[piece.patch].name.clone();
-            match self.outline.rim(piece, self.tolerance) {
+            match self.outline.rim(piece, self.tolerances) {
                 Err(reason) => Err(SurfaceMeshError::Trim { name, reason }),
                 Ok(rim) if rim.nodes.iter().any(|node| node.vertex == u32::MAX) => {
                     Err(SurfaceMeshError::Flat { name })
@@ -481,7 +508,7 @@ impl Plan {
         SurfaceChart {
             sheet: Sheet::new(&self.outline.pieces[piece].surface),
             field: &self.field,
-            curvature: self.curvature,
+            curvature: &self.curvature,
         }
     }
 
@@ -497,6 +524,16 @@ impl Plan {
 /// Whether a vertex of a patch is one of a curve that the model says how to cut.
 fn is_kept<'a>(kept: &'a BTreeSet<u32>, rim: &'a Rim) -> impl Fn(usize) -> bool + Sync + 'a {
     move |v| rim.nodes.get(v).is_some_and(|node| kept.contains(&node.vertex))
+}
+
+/// The gradation function of the options, if they have one that surfaces can use.
+fn own_gradation(options: &SurfaceOptions) -> Result<Option<Expression>, ExpressionError> {
+    match &options.common.gradation {
+        Gradation::Expression(expression) => {
+            expression.demand_surface().map(|()| Some(expression.clone()))
+        }
+        _ => Ok(None),
+    }
 }
 
 /// The spacings that the curvature wants all over the patches.

@@ -216,3 +216,100 @@ fn a_form_without_regions_is_checked_against_all_patches() {
     let mesh = text(&folder.path().join("teapot.stl"));
     assert_exit(&run(&["mesh", &example("teapot.json"), "-o", &mesh]), 0);
 }
+
+// spec: K38
+#[test]
+fn an_iges_file_is_meshed_checked_and_welded() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let mesh = text(&folder.path().join("part.vtu"));
+    let model = example("tube.igs");
+    let told = assert_exit(&run(&["mesh", &model, "--spacing", "0.3", "-o", &mesh]), 0);
+    assert!(told.contains("lengths are in millimetres") && told.contains("closed"), "{told}");
+    let told = assert_exit(&run(&["check", &mesh, "--surface", &model, "--closed"]), 0);
+    assert!(told.contains("Euler number 2, closed"), "{told}");
+    let welded = ["mesh", &model, "--spacing", "0.3", "--weld", "1e-4", "--json", "-o", &mesh];
+    let output = run(&welded);
+    assert_exit(&output, 0);
+    let told: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(told["notes"][0].as_str().is_some_and(|note| note.contains("millimetres")), "{told}");
+    let check = ["check", &mesh, "--surface", &model, "--weld", "1e-4"];
+    assert_exit(&run(&check), 0);
+    let cut = folder.path().join("cut.igs");
+    let whole = std::fs::read(&model).expect("the example");
+    std::fs::write(&cut, &whole[..whole.len() / 2]).expect("writable");
+    let told = assert_exit(&run(&["mesh", &text(&cut), "-o", &mesh]), 2);
+    assert!(told.contains("cut.igs:"), "{told}");
+    for wrong in ["0", "-1", "nan"] {
+        let weld = format!("--weld={wrong}");
+        assert_exit(&run(&["mesh", &model, &weld, "-o", &mesh]), 2);
+    }
+}
+
+// spec: X71
+#[test]
+fn step_files_are_refused_with_what_to_do_instead() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let mesh = text(&folder.path().join("a.vtu"));
+    for name in ["part.step", "part.STP"] {
+        let path = text(&folder.path().join(name));
+        std::fs::write(&path, "ISO-10303-21;\n").expect("writable");
+        for arguments in [["mesh", &path, "-o", &mesh], ["check", &mesh, "--surface", &path]] {
+            let told = assert_exit(&run(&arguments), 2);
+            assert!(told.contains("STEP files are not read") && told.contains("IGES"), "{told}");
+        }
+    }
+}
+
+// spec: K39
+#[test]
+fn grids_of_domains_and_models_are_written_as_quadrilaterals() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let square = text(&folder.path().join("square.json"));
+    let points = "[[0,0],[1,0],[2,0],[2,1],[2,2],[1,2],[0,2],[0,1]]";
+    std::fs::write(&square, format!(r#"{{"outer": {points}}}"#)).expect("writable");
+    let mesh = |name: &str| text(&folder.path().join(name));
+    let grid = ["--method", "elliptic", "--corners", "0,2,4,6", "--quads"];
+    for name in ["a.msh", "a.vtu", "a.vtk", "a.off", "a.obj", "a.su2"] {
+        let out = mesh(name);
+        let all = [&["mesh", &square, "-o", &out][..], &grid].concat();
+        assert_exit(&run(&all), 0);
+        let told = assert_exit(&run(&["check", &out, "--split-quads", "--domain", &square]), 0);
+        assert!(told.contains("8 triangles, 9 points"), "{told}");
+        assert_exit(&run(&["check", &out, "--domain", &square]), 2);
+    }
+    for (name, more, exit, word) in [
+        ("a.stl", &grid[..], 2, "cannot carry the quadrilaterals"),
+        ("c.vtu", &["--quads"][..], 2, "transfinite or elliptic only"),
+    ] {
+        let out = mesh(name);
+        let told = assert_exit(&run(&[&["mesh", &square, "-o", &out][..], more].concat()), exit);
+        assert!(told.contains(word), "{told}");
+        assert!(name == "a.stl" || !Path::new(&out).exists(), "{out}");
+    }
+    let model = mesh("patch.json");
+    let bent = r#"{"patches": [{"kind": "bezier", "net": [[[0,0,0],[0,1,1],[0,2,0]], [[2,0,0],[2,1,1],[2,2,0]]]}]}"#;
+    std::fs::write(&model, bent).expect("writable");
+    let out = mesh("patch.vtu");
+    let all =
+        ["mesh", &model, "--spacing", "0.5", "--method", "transfinite", "--quads", "-o", &out];
+    assert_exit(&run(&all), 0);
+    let check = ["check", &out, "--split-quads", "--surface", &model];
+    assert_exit(&run(&check), 0);
+    assert_exit(
+        &run(&check.map(|word| if word == "--split-quads" { "--timings" } else { word })),
+        1,
+    );
+}
+
+// spec: W10
+#[test]
+fn a_cell_that_is_not_convex_is_no_quadrilateral() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let domain = text(&folder.path().join("arrow.json"));
+    std::fs::write(&domain, r#"{"outer": [[0,0],[2,0],[0.5,0.5],[0,2]]}"#).expect("writable");
+    let out = text(&folder.path().join("arrow.vtu"));
+    let all = ["mesh", &domain, "--method", "transfinite", "--corners", "0,1,2,3", "-o", &out];
+    assert_exit(&run(&all), 0);
+    let told = assert_exit(&run(&[&all[..], &["--quads"]].concat()), 2);
+    assert!(told.contains("1 cells of the grid are not convex") && told.contains("W10"), "{told}");
+}

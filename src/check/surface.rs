@@ -116,10 +116,11 @@ fn measure(
         edges.iter().filter(|(_, count)| *count == 1).map(|(edge, _)| *edge).collect();
     report.boundary_edges = boundary.len();
     let mut out = Collector::new(mesh, options.list_limit);
-    find_deviations(&measured, limits, ROUNDING * sheets.size, (mesh, &mut out));
+    let tolerance = model.tolerance.unwrap_or(0.0).max(ROUNDING * sheets.size);
+    find_deviations(&measured, limits, tolerance, (mesh, &mut out));
     find_folds(&measured, (mesh, &mut out));
     find_euler(&report, &mut out);
-    let ends = Boundary { model, complex: &complex, tolerance: ROUNDING * sheets.size };
+    let ends = Boundary { model, complex: &complex, tolerance };
     find_boundary(&ends, &boundary, (mesh, &mut out));
     (report.findings, report.counts) = out.finish(|id| options.allow.contains(&id));
     report

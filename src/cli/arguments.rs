@@ -109,8 +109,8 @@ Examples:
   trigrade mesh wing.poly --method afm --dry-run
   trigrade mesh vase.json --spacing 0.05 -o vase.stl -o vase.msh")]
 pub struct MeshArguments {
-    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json or .bpt; `-` is
-    /// standard input.
+    /// The domain: .poly, .json, .geojson or an airfoil .dat; or a surface model, .json, .bpt or .igs;
+    /// `-` is standard input.
     #[arg(value_name = "DOMAIN", value_hint = ValueHint::FilePath)]
     pub domain: PathBuf,
     /// Where the mesh goes; the extension names the form, `-` is standard output; repeatable.
@@ -201,7 +201,8 @@ pub struct MeshOptions {
     pub density: Density,
     /// How spacing spreads from the boundary into the domain: growth, mean, third, uniform, or an
     /// expression such as `a*L1 + b*L2 + c*L3` of a, b, c, L1, L2, L3, x, y and H, the growth field
-    /// (with `--method direct` of D1, D2, L1, L2, x, y and H).
+    /// (with `--method direct` of D1, D2, L1, L2, x, y and H); on surface models an expression of x, y,
+    /// z, the principal curvatures k1 and k2, the area element J of the patch, and H, the spacing.
     #[arg(long, value_name = "NAME|EXPR", default_value = "growth", value_parser = parse_gradation)]
     #[arg(allow_hyphen_values = true)]
     pub gradation: mesher::Gradation,
@@ -249,6 +250,9 @@ pub struct MeshOptions {
     /// order; without it the four sharpest.
     #[arg(long, value_name = "I,J,K,L", value_parser = parse_corners)]
     pub corners: Option<[u32; 4]>,
+    /// Write the cells of a structured grid as quadrilaterals (.msh, .vtu, .vtk, .off, .obj, .su2).
+    #[arg(long)]
+    pub quads: bool,
     /// Allow new points on the boundary and on constraints: where --min-angle demands them, and
     /// with the other methods where the spacing jumps or a gap is narrow.
     #[arg(long)]
@@ -348,6 +352,10 @@ pub struct SurfaceFlags {
     /// Largest turn of the surface's normal along an edge, in degrees.
     #[arg(long, value_name = "DEGREES", value_parser = parse_positive)]
     pub angle_per_edge: Option<f64>,
+    /// Make curves one that trim patches and agree within this, as the edges of neighbouring faces of
+    /// IGES files do; corners likewise.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive)]
+    pub weld: Option<f64>,
 }
 
 /// `--method`
@@ -569,6 +577,9 @@ pub struct CheckArguments {
     /// No triangle's normal may be off the surface's by more than this, in degrees.
     #[arg(long, value_name = "DEGREES", value_parser = parse_positive, requires = "surface")]
     pub normal_deviation: Option<f64>,
+    /// Curves of the model that agree within this are one, as they were for `mesh`.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_positive, requires = "surface")]
+    pub weld: Option<f64>,
     /// What is demanded.
     #[command(flatten)]
     pub demands: Demands,

@@ -36,7 +36,7 @@ pub fn run(
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
     let model = arguments.surface.as_deref();
-    let model = model.map(|path| surface::load_model(path, None)).transpose()?;
+    let model = model.map(|path| surface::load_model(path, None, arguments.weld)).transpose()?;
     let certified = arguments.verify_certificate.as_deref().map(load_certificate).transpose()?;
     let options = match &certified {
         Some(certificate) => certificate.options(),

@@ -142,7 +142,7 @@ fn through_msh(mesh: MeshView<'_>, name: &str) -> Result<MeshData, Failure> {
     let mut bytes = Vec::new();
     write_mesh(mesh, MeshForm::Msh, WriteOptions::default(), &mut bytes)
         .map_err(|e| Failure::cannot_run(Diagnostic::new(e.to_string())))?;
-    parse(&bytes, MeshForm::Msh, &[], false).map_err(|e| unreadable(name, &e))
+    parse(&bytes, MeshForm::Msh, &[], true).map_err(|e| unreadable(name, &e))
 }
 
 /// The certificate of a mesh that was read back and judged.

@@ -10,6 +10,7 @@ use super::judged::{self, Judged, certify, judge, paths, read_back};
 use super::mesh_file::{self, Drawing};
 use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
+use super::quads;
 use super::refinement::Refinement;
 use super::size_file::load_size_field;
 use super::size_layers::{NodalSpacing, nodal_spacing, spacing_layers};
@@ -20,7 +21,7 @@ use super::words::count;
 use crate::domain::Domain;
 use crate::domain::validate::validate;
 use crate::format::MeshView;
-use crate::mesh::MeshData;
+use crate::mesh::{Mesh, MeshData};
 use crate::mesher::{Count, Fit, MeshError, Meshed, Options, mesh_plc};
 use crate::size::Prediction;
 use crate::structured::GridStats;
@@ -50,6 +51,7 @@ pub fn run(
         let message = "`--method direct-surface` has a meaning for surface models only";
         return Err(Failure::cannot_run(Diagnostic::new(message)));
     }
+    let quads = quads::wanted(&arguments.options)?;
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, domain) = load_domain(&arguments.domain, &arguments.reading)?;
@@ -71,14 +73,18 @@ pub fn run(
     }
     let has_viewer = files.iter().any(|file| file.form == OutputForm::Html);
     let shown = has_viewer.then(|| plc.clone());
-    let meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    let mut meshed = mesh_plc(plc, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    if quads {
+        let Mesh { points, triangles, .. } = &mut meshed.mesh;
+        quads::pair(triangles, Some(points))?;
+    }
     watch.begin("write");
     summary.note(&meshed, &options);
     if let Count::Target(target) = options.count {
         summary.target = Some(target);
     }
     let background = shown.and_then(|plc| nodal_spacing(plc, &options));
-    write_all(&mut outputs, &files, &meshed, background)?;
+    write_all(&mut outputs, &files, (&meshed, quads), background)?;
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
@@ -127,7 +133,7 @@ pub fn no_mesh(error: &MeshError) -> Failure {
 fn write_all(
     outputs: &mut Outputs,
     files: &[OutputFile],
-    meshed: &Meshed,
+    (meshed, quads): (&Meshed, bool),
     background: Option<NodalSpacing>,
 ) -> Result<(), Failure> {
     let needs_picture = files.iter().any(|file| file.form.is_picture());
@@ -144,7 +150,8 @@ fn write_all(
     let background = background.map(spacing);
     let drawing = Drawing { layers, background, ..Drawing::of(&data, "") };
     for (i, file) in files.iter().enumerate() {
-        mesh_file::write(outputs, i, file, MeshView::from(&meshed.mesh), &drawing)?;
+        let view = quads::view(MeshView::from(&meshed.mesh), quads);
+        mesh_file::write(outputs, i, file, view, &drawing)?;
     }
     Ok(())
 }

@@ -96,7 +96,8 @@ pub fn parse(
     read_mesh(bytes, form, &options)
 }
 
-/// Every written mesh that can be read, by name, read from its bytes when asked for.
+/// Every written mesh that can be read, by name, read from its bytes when asked for; quadrilaterals,
+/// which are written on demand only, as two triangles each.
 pub fn written_meshes<'a>(
     outputs: &'a Outputs,
     files: &'a [OutputFile],
@@ -117,7 +118,7 @@ pub fn written_meshes<'a>(
             return None;
         }
         let name = file.path.display().to_string();
-        let mesh = parse(&bytes, form, &std::mem::take(&mut companions), false);
+        let mesh = parse(&bytes, form, &std::mem::take(&mut companions), true);
         Some(mesh.map_err(|e| unreadable(&name, &e)).map(|mesh| (name, mesh)))
     })
 }
@@ -171,6 +172,9 @@ pub fn write(
             }
             (OutputForm::Mesh(form, options), None) => {
                 write_mesh(mesh, form, options, out).map_err(Refusal::from)
+            }
+            (OutputForm::Json, _) if mesh.has_quads() => {
+                Err(Refusal::Form("this JSON cannot carry the quadrilaterals of a grid".into()))
             }
             (OutputForm::Json, _) => mesh_json::write(mesh, out).map_err(Refusal::from),
             (OutputForm::Svg, _) => drawing

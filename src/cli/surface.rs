@@ -11,6 +11,7 @@ use super::judged::{self, Judged, certify, judge, paths, read_back};
 use super::mesh_file::{self, Drawing};
 use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
+use super::quads;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, prediction, seconds};
 use super::words::{boundary, count};
@@ -37,7 +38,9 @@ use std::time::Duration;
 /// Exit code 2: the file cannot be read.
 pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     let path = &arguments.domain;
-    let is_one = |e: &OsStr| ["json", "bpt"].iter().any(|known| e.eq_ignore_ascii_case(known));
+    let known = ["json", "bpt", "igs", "iges"];
+    let is_one = |e: &OsStr| known.iter().any(|known| e.eq_ignore_ascii_case(known));
+    refuse_step(path)?;
     match arguments.reading.from.as_deref() {
         Some(form) => Ok(ModelForm::from_name(form).is_some()),
         None if is_dash(path) || !path.extension().is_some_and(is_one) => Ok(false),
@@ -45,18 +48,39 @@ pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     }
 }
 
-/// Reads a surface model.
+/// STEP files are not read; what to do instead is said before anything is tried.
+fn refuse_step(path: &Path) -> Result<(), Failure> {
+    let is_step = |e: &OsStr| ["step", "stp", "p21"].iter().any(|k| e.eq_ignore_ascii_case(k));
+    if !path.extension().is_some_and(is_step) {
+        return Ok(());
+    }
+    let diagnostic = Diagnostic::new("STEP files are not read").rule("X71").at(path.display());
+    let help = "export the surfaces as IGES (trimmed surfaces, not solids), or as NURBS in JSON; a mesh of \
+                the part, as STL or OBJ, goes through `trigrade remesh`";
+    Err(Failure::cannot_run(diagnostic.help(help)))
+}
+
+/// Reads a surface model; with `weld`, curves that agree within it are made one.
 ///
 /// # Errors
 /// Exit code 2: the file cannot be read or is malformed.
-pub fn load_model(path: &Path, form: Option<&str>) -> Result<(Input, Model), Failure> {
+pub fn load_model(
+    path: &Path,
+    form: Option<&str>,
+    weld: Option<f64>,
+) -> Result<(Input, Model), Failure> {
+    refuse_step(path)?;
     let input = load(path)?;
     let form = match form {
         Some(name) => ModelForm::from_name(name),
         None => ModelForm::of(path, &input.bytes),
     };
     let form = form.unwrap_or(ModelForm::Json);
-    let model = read_model(&input.bytes, form).map_err(|error| malformed(&input.name, &error))?;
+    let mut model =
+        read_model(&input.bytes, form).map_err(|error| malformed(&input.name, &error))?;
+    if let Some(tolerance) = weld {
+        model.weld(tolerance);
+    }
     Ok((input, model))
 }
 
@@ -70,9 +94,14 @@ pub fn run(
     cleanup: &Cleanup,
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
+    let quads = quads::wanted(&arguments.options)?;
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
-    let (input, model) = load_model(&arguments.domain, arguments.reading.from.as_deref())?;
+    let (input, model) = load_model(
+        &arguments.domain,
+        arguments.reading.from.as_deref(),
+        arguments.on_surface.weld,
+    )?;
     let options = SurfaceOptions {
         common: arguments.options.options(),
         chord_error: arguments.on_surface.chord_error,
@@ -84,14 +113,18 @@ pub fn run(
     let mut outputs = Outputs::prepare(&targets, cleanup)?;
     let mut summary =
         Summary { name: input.name.clone(), patches: model.patches.len(), ..Summary::default() };
+    summary.notes.clone_from(&model.notes);
     if arguments.dry_run {
         let predicted = prediction(|observer| mesh_model(&model, &options, observer));
         summary.prediction = Some(predicted.map_err(|e| no_mesh(&e))?);
         return Ok(summary.outcome(&watch.finish(), arguments.timings));
     }
-    let meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    let mut meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
+    if quads {
+        quads::pair(&mut meshed.mesh.triangles, None)?;
+    }
     watch.begin("write");
-    write_all(&mut outputs, &files, &meshed)?;
+    write_all(&mut outputs, &files, (&meshed, quads))?;
     if !arguments.no_check {
         watch.begin("read back");
         let meshes = read_back(&outputs, &files, MeshView::from(&meshed.mesh))?;
@@ -145,6 +178,8 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
         | SurfaceMeshError::Stuck { .. }
         | SurfaceMeshError::TooMany { .. }
         | SurfaceMeshError::Front(_)
+        | SurfaceMeshError::Gradation(_)
+        | SurfaceMeshError::NoSpacing { .. }
         | SurfaceMeshError::Options(_) => Failure::cannot_run(diagnostic),
     }
 }
@@ -152,10 +187,11 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
 fn write_all(
     outputs: &mut Outputs,
     files: &[OutputFile],
-    meshed: &SurfaceMeshed,
+    (meshed, quads): (&SurfaceMeshed, bool),
 ) -> Result<(), Failure> {
     let drawing = Drawing::of(&meshed.mesh, "");
     let view = MeshView::from(&meshed.mesh).with_parameters(&meshed.parameters);
+    let view = quads::view(view, quads);
     for (i, file) in files.iter().enumerate() {
         mesh_file::write(outputs, i, file, view, &drawing)?;
     }
@@ -167,6 +203,8 @@ fn write_all(
 struct Summary {
     name: String,
     patches: usize,
+    /// What the reader of the model wants to be told.
+    notes: Vec<String>,
     prediction: Option<Prediction>,
     meshed: Option<SurfaceMeshed>,
     judged: Option<Judged<SurfaceReport>>,
@@ -191,6 +229,7 @@ impl Summary {
     fn text(&self, laps: &[(String, Duration)], timings: bool) -> String {
         let mut lines = vec![format!("{}: {} patches", self.name, count(self.patches as u64))];
         let mut line = |label: &str, text: String| lines.push(format!("  {label:<11}{text}"));
+        self.notes.iter().for_each(|note| line("note", note.clone()));
         let predicted = self.prediction.or(self.meshed.as_ref().map(|meshed| meshed.prediction));
         if let Some(prediction) = predicted {
             line("predicted", format!("{} triangles", count(prediction.triangles as u64)));
@@ -227,6 +266,7 @@ impl Summary {
             "schema": "trigrade-mesh/1",
             "verdict": judged::word(self.judged.as_ref()),
             "domain": self.name,
+            "notes": self.notes,
             "predicted": predicted.map(|p| p.triangles),
             "points": self.meshed.as_ref().map(|meshed| meshed.mesh.points.len()),
             "triangles": self.meshed.as_ref().map(|meshed| meshed.mesh.triangles.len()),

@@ -209,6 +209,9 @@ pub enum Problem {
         /// Where the curve starts.
         to: [f64; 3],
     },
+    /// An entity of an IGES file that is not read, or makes no sense.
+    #[error("{0}")]
+    Entity(String),
     /// A name that the file does not define, or defines twice.
     #[error("{0}")]
     Name(String),
@@ -231,6 +234,7 @@ impl Problem {
             Self::Nodes(_) => "S2",
             Self::Surface(_) => "S3",
             Self::Joint { .. } => "S5",
+            Self::Entity(_) => "X66",
             Self::Name(_) => "S7",
         }
     }

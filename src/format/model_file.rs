@@ -1,7 +1,7 @@
 //! Files of surface models: which form a file has, and reading it.
 
 use super::domain_file::{DomainReadError, without_mark};
-use super::{bpt, model_json, nurbs_json};
+use super::{bpt, iges, model_json, nurbs_json};
 use crate::model::Model;
 use serde_json::Value;
 use std::path::Path;
@@ -15,12 +15,14 @@ pub enum ModelForm {
     Bpt,
     /// NURBS surfaces as JSON, as geomdl writes them.
     Nurbs,
+    /// IGES, fixed-length ASCII.
+    Iges,
 }
 
 impl ModelForm {
     /// All forms with the names that `--from` takes.
-    pub const ALL: [(Self, &'static str); 3] =
-        [(Self::Json, "model"), (Self::Bpt, "bpt"), (Self::Nurbs, "nurbs")];
+    pub const ALL: [(Self, &'static str); 4] =
+        [(Self::Json, "model"), (Self::Bpt, "bpt"), (Self::Nurbs, "nurbs"), (Self::Iges, "iges")];
 
     /// The form of this name.
     #[must_use]
@@ -28,13 +30,14 @@ impl ModelForm {
         Self::ALL.into_iter().find(|(_, known)| *known == name).map(|(form, _)| form)
     }
 
-    /// The form of a file: by the extension `bpt` in any case, or JSON by its keys: `patches` or
-    /// `"format": "trigrade-model"`, `shape` or `degree_u` and `degree_v`.
+    /// The form of a file: by the extension `bpt`, `igs` or `iges` in any case, or JSON by its keys:
+    /// `patches` or `"format": "trigrade-model"`, `shape` or `degree_u` and `degree_v`.
     #[must_use]
     pub fn of(path: &Path, bytes: &[u8]) -> Option<Self> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         match extension.to_ascii_lowercase().as_str() {
             "bpt" => Some(Self::Bpt),
+            "igs" | "iges" => Some(Self::Iges),
             "json" => Self::of_json(bytes),
             _ => None,
         }
@@ -63,6 +66,7 @@ pub fn read_model(bytes: &[u8], form: ModelForm) -> Result<Model, DomainReadErro
         ModelForm::Json => model_json::read(bytes),
         ModelForm::Bpt => bpt::read(bytes),
         ModelForm::Nurbs => nurbs_json::read(bytes),
+        ModelForm::Iges => iges::read(bytes),
     }
 }
 
@@ -75,6 +79,8 @@ mod tests {
     fn the_form_is_known_by_extension_and_keys() {
         let of = |name: &str, text: &str| ModelForm::of(Path::new(name), text.as_bytes());
         assert_eq!(of("a.BPT", ""), Some(ModelForm::Bpt));
+        assert_eq!(of("a.IGS", ""), Some(ModelForm::Iges));
+        assert_eq!(of("a.iges", ""), Some(ModelForm::Iges));
         assert_eq!(of("a.json", r#"{"patches": []}"#), Some(ModelForm::Json));
         assert_eq!(of("a.json", r#"{"format": "trigrade-model"}"#), Some(ModelForm::Json));
         assert_eq!(of("a.json", r#"{"shape": {}}"#), Some(ModelForm::Nurbs));

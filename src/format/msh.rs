@@ -59,7 +59,8 @@ const ELEMENT_TYPES: [(i64, usize, &str); 38] = [
 pub(crate) const LINE: i64 = 1;
 /// Gmsh's code of a 3-node triangle.
 pub(crate) const TRIANGLE: i64 = 2;
-const QUADRILATERAL: i64 = 3;
+/// Gmsh's code of a 4-node quadrilateral.
+pub(crate) const QUADRILATERAL: i64 = 3;
 
 /// How numbers stand in the file: as text, or binary with an order of bytes.
 #[derive(Clone, Copy, Debug)]
@@ -220,6 +221,17 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
         return Err(scanner.malformed(missing, b""));
     }
     mesh.finish(&scanner)
+}
+
+/// The number of each node with its place among the points, and how many there are.
+pub(crate) fn numbers(bytes: &[u8]) -> Result<(Vec<(i64, usize)>, usize), ReadError> {
+    let mesh = read(bytes, &ReadOptions::default())?;
+    let count = mesh.points.len();
+    let own: Vec<(i64, usize)> = match mesh.point_numbers.is_empty() {
+        true => (0..count).map(|i| (i as i64, i)).collect(),
+        false => mesh.point_numbers.into_iter().zip(0..).collect(),
+    };
+    Ok((own, count))
 }
 
 /// How numbers stand in an MSH file.

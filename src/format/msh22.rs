@@ -3,7 +3,8 @@
 use crate::format::MeshForm;
 use crate::format::assemble::{Assembler, Cell};
 use crate::format::error::{ReadError, WriteError};
-use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, TRIANGLE};
+use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, QUADRILATERAL, TRIANGLE};
+use crate::format::msh_view;
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
 use crate::format::view::MeshView;
@@ -111,7 +112,7 @@ fn read_binary_block(
 /// Writes an MSH 2.2 file; the physical group of an edge is its marker, that of a triangle its
 /// region (1 in a mesh without regions).
 pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> Result<(), WriteError> {
-    let elements = mesh.edges().len() + mesh.triangles().len();
+    let elements = mesh.edges().len() + mesh.face_count();
     if i32::try_from(elements).is_err() || i32::try_from(mesh.point_count()).is_err() {
         let what = "more than 2,147,483,647 nodes or elements";
         return Err(WriteError::Carry { form: MeshForm::Msh, what });
@@ -125,8 +126,9 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> Resul
     let end = if is_binary { "\n" } else { "" };
     out.text(&format!("{end}$EndNodes\n$Elements\n{elements}\n"))?;
     write_edges(mesh, &groups, is_binary, out)?;
-    write_triangles(mesh, &groups, is_binary, out)?;
+    write_faces(mesh, &groups, is_binary, out)?;
     out.text(&format!("{end}$EndElements\n"))?;
+    msh_view::write(mesh.parameters(), is_binary, out)?;
     Ok(())
 }
 
@@ -151,19 +153,14 @@ fn write_edges(mesh: MeshView, groups: &Groups, binary: bool, out: &mut TextOut)
     Ok(())
 }
 
-fn write_triangles(
-    mesh: MeshView,
-    groups: &Groups,
-    binary: bool,
-    out: &mut TextOut,
-) -> io::Result<()> {
-    let triangles = mesh.triangles();
-    write_block_header(TRIANGLE, triangles.len(), binary, out)?;
+fn write_faces(mesh: MeshView, groups: &Groups, binary: bool, out: &mut TextOut) -> io::Result<()> {
+    let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
+    write_block_header(code, mesh.face_count(), binary, out)?;
     let first = mesh.edges().len() as i64 + 1;
-    for (index, triangle) in triangles.iter().enumerate() {
-        let region = mesh.region(index, DEFAULT_REGION);
+    for (index, face) in mesh.faces().enumerate() {
+        let region = mesh.face_region(index, DEFAULT_REGION);
         let tags = [i64::from(region), groups.surface(region)];
-        write_element((first + index as i64, TRIANGLE), tags, triangle, binary, out)?;
+        write_element((first + index as i64, code), tags, face.corners(), binary, out)?;
     }
     Ok(())
 }

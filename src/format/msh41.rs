@@ -2,7 +2,8 @@
 
 use crate::format::assemble::{Assembler, Cell};
 use crate::format::error::{ReadError, ReadFault, WriteError};
-use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, TRIANGLE};
+use crate::format::msh::{self, Codec, DEFAULT_REGION, Groups, LINE, QUADRILATERAL, TRIANGLE};
+use crate::format::msh_view;
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
 use crate::format::view::MeshView;
@@ -171,6 +172,7 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> Resul
     out.entities(mesh, &groups)?;
     out.nodes(mesh)?;
     out.elements(mesh, &groups)?;
+    msh_view::write(mesh.parameters(), is_binary, out.out)?;
     Ok(())
 }
 
@@ -276,9 +278,9 @@ impl Out<'_, '_> {
     /// Elements keep their order: a new block starts wherever the marker or region changes.
     fn elements(&mut self, mesh: MeshView, groups: &Groups) -> io::Result<()> {
         let edges: Vec<_> = mesh.edges().chunk_by(|a, b| a.marker == b.marker).collect();
-        let triangles = triangle_runs(mesh);
-        let blocks = edges.len() + triangles.len();
-        let count = (mesh.edges().len() + mesh.triangles().len()) as i64;
+        let runs = face_runs(mesh);
+        let blocks = edges.len() + runs.len();
+        let count = (mesh.edges().len() + mesh.face_count()) as i64;
         self.out.text("$Elements\n")?;
         self.head(blocks as i64, count)?;
         let mut number = 1;
@@ -289,10 +291,12 @@ impl Out<'_, '_> {
                 number += 1;
             }
         }
-        for (region, run) in triangles {
-            self.block([2, groups.surface(region), TRIANGLE], run.len() as i64)?;
-            for triangle in run {
-                self.element(number, triangle)?;
+        let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
+        let mut faces = mesh.faces();
+        for (region, length) in runs {
+            self.block([2, groups.surface(region), code], length as i64)?;
+            for face in faces.by_ref().take(length) {
+                self.element(number, face.corners())?;
                 number += 1;
             }
         }
@@ -310,17 +314,15 @@ impl Out<'_, '_> {
     }
 }
 
-/// Runs of triangles of the same region.
-fn triangle_runs<'a>(mesh: MeshView<'a>) -> Vec<(i32, &'a [[u32; 3]])> {
-    let triangles = mesh.triangles();
-    let mut runs = Vec::new();
-    let mut start = 0;
-    while start < triangles.len() {
-        let region = mesh.region(start, DEFAULT_REGION);
-        let same = |&index: &usize| mesh.region(index, DEFAULT_REGION) == region;
-        let length = (start..triangles.len()).take_while(same).count();
-        runs.push((region, &triangles[start..start + length]));
-        start += length;
+/// Runs of faces of the same region, with their lengths.
+fn face_runs(mesh: MeshView) -> Vec<(i32, usize)> {
+    let mut runs: Vec<(i32, usize)> = Vec::new();
+    for index in 0..mesh.face_count() {
+        let region = mesh.face_region(index, DEFAULT_REGION);
+        match runs.last_mut() {
+            Some((last, length)) if *last == region => *length += 1,
+            _ => runs.push((region, 1)),
+        }
     }
     runs
 }

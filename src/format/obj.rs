@@ -126,11 +126,9 @@ pub(crate) fn write(mesh: MeshView, out: &mut TextOut) -> io::Result<()> {
         out.float(y, b' ')?;
         out.float(z, b'\n')?;
     }
-    for &[a, b, c] in mesh.triangles() {
+    for face in mesh.faces() {
         out.bytes(b"f ")?;
-        out.integer(i64::from(a) + 1, b' ')?;
-        out.integer(i64::from(b) + 1, b' ')?;
-        out.integer(i64::from(c) + 1, b'\n')?;
+        out.corners(face.corners(), 1, b'\n')?;
     }
     Ok(())
 }

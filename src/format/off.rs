@@ -105,17 +105,15 @@ pub(crate) fn polygon(mesh: &mut Assembler, corners: &[i64; 4], count: usize, ce
 
 /// Writes an OFF file; marked edges and regions are dropped.
 pub(crate) fn write(mesh: MeshView, out: &mut TextOut) -> io::Result<()> {
-    out.text(&format!("OFF\n{} {} 0\n", mesh.point_count(), mesh.triangles().len()))?;
+    out.text(&format!("OFF\n{} {} 0\n", mesh.point_count(), mesh.face_count()))?;
     for [x, y, z] in mesh.points() {
         out.float(x, b' ')?;
         out.float(y, b' ')?;
         out.float(z, b'\n')?;
     }
-    for &[a, b, c] in mesh.triangles() {
-        out.bytes(b"3 ")?;
-        out.integer(i64::from(a), b' ')?;
-        out.integer(i64::from(b), b' ')?;
-        out.integer(i64::from(c), b'\n')?;
+    for face in mesh.faces() {
+        out.bytes(if mesh.has_quads() { b"4 " } else { b"3 " })?;
+        out.corners(face.corners(), 0, b'\n')?;
     }
     Ok(())
 }

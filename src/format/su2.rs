@@ -182,12 +182,10 @@ impl Su2Reader {
 /// occur; regions are dropped. Two dimensions if every z is +0.0.
 pub(crate) fn write(mesh: MeshView, out: &mut TextOut) -> io::Result<()> {
     let dimension = if mesh.is_plane() { 2 } else { 3 };
-    out.text(&format!("NDIME= {dimension}\nNELEM= {}\n", mesh.triangles().len()))?;
-    for (index, &[a, b, c]) in (0..).zip(mesh.triangles()) {
-        out.bytes(b"5 ")?;
-        out.integer(i64::from(a), b' ')?;
-        out.integer(i64::from(b), b' ')?;
-        out.integer(i64::from(c), b' ')?;
+    out.text(&format!("NDIME= {dimension}\nNELEM= {}\n", mesh.face_count()))?;
+    for (index, face) in (0..).zip(mesh.faces()) {
+        out.bytes(if mesh.has_quads() { b"9 " } else { b"5 " })?;
+        out.corners(face.corners(), 0, b' ')?;
         out.integer(index, b'\n')?;
     }
     out.text(&format!("NPOIN= {}\n", mesh.point_count()))?;

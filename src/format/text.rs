@@ -54,6 +54,16 @@ impl<'a> TextOut<'a> {
         self.bytes(&[end])
     }
 
+    /// Appends references to points, counted from `base`, with blanks between them and `end`.
+    #[inline]
+    pub(crate) fn corners(&mut self, corners: &[u32], base: i64, end: u8) -> io::Result<()> {
+        for (index, &corner) in corners.iter().enumerate() {
+            let after = if index + 1 == corners.len() { end } else { b' ' };
+            self.integer(i64::from(corner) + base, after)?;
+        }
+        Ok(())
+    }
+
     /// Appends a finite number as JSON and Rust read it back to the same bits, -0.0 included.
     pub(crate) fn number(&mut self, value: f64) -> io::Result<()> {
         let mut digits = zmij::Buffer::new();

@@ -23,6 +23,22 @@ pub struct MeshView<'a> {
     edges: &'a [MarkedEdge],
     regions: &'a [i32],
     parameters: &'a [[f64; 2]],
+    /// Whether two triangles each are a quadrilateral.
+    is_paired: bool,
+}
+
+/// A face to be written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face {
+    corners: [u32; 4],
+    count: usize,
+}
+
+impl Face {
+    /// Its corners in order.
+    pub(crate) fn corners(&self) -> &[u32] {
+        &self.corners[..self.count]
+    }
 }
 
 impl<'a> From<&'a Mesh> for MeshView<'a> {
@@ -33,6 +49,7 @@ impl<'a> From<&'a Mesh> for MeshView<'a> {
             edges: &mesh.edges,
             regions: &mesh.regions,
             parameters: &[],
+            is_paired: false,
         }
     }
 }
@@ -45,6 +62,7 @@ impl<'a> From<&'a MeshData> for MeshView<'a> {
             edges: &mesh.edges,
             regions: &mesh.regions,
             parameters: &[],
+            is_paired: false,
         }
     }
 }
@@ -56,6 +74,51 @@ impl<'a> MeshView<'a> {
     pub fn with_parameters(mut self, parameters: &'a [[f64; 2]]) -> Self {
         self.parameters = if parameters.len() == self.point_count() { parameters } else { &[] };
         self
+    }
+
+    /// The same mesh with two triangles (a, b, c) and (a, c, d) each as the quadrilateral (a, b, c, d);
+    /// `None` when they are not so paired (see [`crate::structured::pair_up`]).
+    #[must_use]
+    pub fn with_quads(mut self) -> Option<Self> {
+        let is_pair =
+            |pair: &[[u32; 3]]| matches!(pair, [[a, _, c], [d, e, _]] if (a, c) == (d, e));
+        let regions = self.regions.chunks(2).all(|pair| pair.len() == 2 && pair[0] == pair[1]);
+        let all = self.triangles.chunks(2).all(is_pair) && regions;
+        self.is_paired = all;
+        all.then_some(self)
+    }
+
+    /// Whether its faces are quadrilaterals.
+    #[must_use]
+    pub const fn has_quads(&self) -> bool {
+        self.is_paired
+    }
+
+    /// Number of triangles, or of quadrilaterals.
+    pub(crate) const fn face_count(&self) -> usize {
+        if self.is_paired { self.triangles.len() / 2 } else { self.triangles.len() }
+    }
+
+    /// Corners of each face.
+    pub(crate) const fn face_corners(&self) -> usize {
+        if self.is_paired { 4 } else { 3 }
+    }
+
+    /// The faces in order.
+    pub(crate) fn faces(self) -> impl Iterator<Item = Face> + 'a {
+        let step = if self.is_paired { 2 } else { 1 };
+        let count = self.face_corners();
+        self.triangles.chunks(step).map(move |chunk| {
+            let [a, b, c] = chunk[0];
+            let d = chunk.get(1).map_or(0, |other| other[2]);
+            Face { corners: [a, b, c, d], count }
+        })
+    }
+
+    /// Region of face `index`, or `default` when the mesh has none.
+    #[inline]
+    pub(crate) fn face_region(&self, index: usize, default: i32) -> i32 {
+        self.region(if self.is_paired { 2 * index } else { index }, default)
     }
 
     /// The parameters (u, v) of the points; empty where there are none.

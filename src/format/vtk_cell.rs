@@ -11,7 +11,8 @@ pub(crate) const TRIANGLE: i64 = 5;
 /// VTK's code of a polygon.
 pub(crate) const POLYGON: i64 = 7;
 const PIXEL: i64 = 8;
-const QUADRILATERAL: i64 = 9;
+/// VTK's code of a quadrilateral.
+pub(crate) const QUADRILATERAL: i64 = 9;
 
 /// Names of the cells that are not read as triangles or edges.
 const NAMES: [(i64, &str); 19] = [

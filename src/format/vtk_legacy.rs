@@ -10,7 +10,9 @@ use crate::format::scalar::Scalar;
 use crate::format::scan::{Endian, Scanner};
 use crate::format::text::TextOut;
 use crate::format::view::MeshView;
-use crate::format::vtk_cell::{Cells, LINE, MARKER_ARRAYS, POLYGON, REGION_ARRAYS, TRIANGLE};
+use crate::format::vtk_cell::{
+    Cells, LINE, MARKER_ARRAYS, POLYGON, QUADRILATERAL, REGION_ARRAYS, TRIANGLE,
+};
 use crate::mesh::MeshData;
 use std::io;
 
@@ -410,8 +412,8 @@ impl VtkReader<'_> {
 /// as lines, with the cell arrays `region` and `marker`.
 pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::Result<()> {
     let mut out = Out { out, is_binary };
-    let (triangles, edges) = (mesh.triangles(), mesh.edges());
-    let cells = triangles.len() + edges.len();
+    let (faces, corners, edges) = (mesh.face_count(), mesh.face_corners(), mesh.edges());
+    let cells = faces + edges.len();
     let encoding = if is_binary { "BINARY" } else { "ASCII" };
     out.line(&format!("# vtk DataFile Version 2.0\ntriangulation\n{encoding}"))?;
     out.line("DATASET UNSTRUCTURED_GRID")?;
@@ -419,24 +421,27 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     for point in mesh.points() {
         out.point(point)?;
     }
-    out.end(&format!("CELLS {cells} {}", 4 * triangles.len() + 3 * edges.len()))?;
-    for &[a, b, c] in triangles {
-        out.integers(&[3, a as i32, b as i32, c as i32])?;
+    out.end(&format!("CELLS {cells} {}", (corners + 1) * faces + 3 * edges.len()))?;
+    for face in mesh.faces() {
+        let mut row = [corners as i32; 5];
+        row[1..].iter_mut().zip(face.corners()).for_each(|(slot, &v)| *slot = v as i32);
+        out.integers(&row[..=corners])?;
     }
     for edge in edges {
         out.integers(&[2, edge.vertices[0] as i32, edge.vertices[1] as i32])?;
     }
+    let face_type = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
     out.end(&format!("CELL_TYPES {cells}"))?;
     for index in 0..cells {
-        out.integers(&[if index < triangles.len() { TRIANGLE } else { LINE } as i32])?;
+        out.integers(&[if index < faces { face_type } else { LINE } as i32])?;
     }
     out.end(&format!("CELL_DATA {cells}\nFIELD FieldData 2\nregion 1 {cells} int"))?;
     for index in 0..cells {
-        out.integers(&[if index < triangles.len() { mesh.region(index, 0) } else { 0 }])?;
+        out.integers(&[if index < faces { mesh.face_region(index, 0) } else { 0 }])?;
     }
     out.end(&format!("marker 1 {cells} int"))?;
     for index in 0..cells {
-        let edge = index.checked_sub(triangles.len()).map(|index| edges[index]);
+        let edge = index.checked_sub(faces).map(|index| edges[index]);
         out.integers(&[edge.map_or(0, |edge| edge.marker)])?;
     }
     let uv = mesh.parameters();

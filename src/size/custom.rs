@@ -19,11 +19,12 @@ pub enum Inputs {
 
 impl Inputs {
     const fn has(&self, variable: Variable) -> bool {
-        use Variable::{A, B, C, D1, D2, H, L1, L2, L3, X, Y};
+        use Variable::{A, B, C, D1, D2, H, J, K1, K2, L1, L2, L3, X, Y, Z};
         match variable {
             X | Y | H | L1 | L2 => true,
             A | B | C | L3 => matches!(self, Self::Nodal(_)),
             D1 | D2 => matches!(self, Self::Direct(_)),
+            Z | K1 | K2 | J => false,
         }
     }
 }
@@ -65,7 +66,13 @@ impl ExpressionField {
             if let Some(column) = expression.column_of(variable) {
                 let method = if matches!(inputs, Inputs::Nodal(_)) { "graded" } else { "direct" };
                 let name = variable.name();
-                let problem = format!("the method {method} has no variable `{name}`");
+                let problem = match variable {
+                    Variable::Z | Variable::K1 | Variable::K2 | Variable::J => format!(
+                        "`{name}` has a meaning on surface models only: a plane domain has no \
+                         curvature, and its map no stretch"
+                    ),
+                    _ => format!("the method {method} has no variable `{name}`"),
+                };
                 return Err(ExpressionError { column, problem });
             }
         }
@@ -110,7 +117,8 @@ impl ExpressionField {
         let [a, b, c] = weights;
         let [l1, l2, l3] = lengths.map(|l| l * self.unit);
         let [d1, d2] = distances.map(|d| d * self.unit);
-        [a, b, c, l1, l2, l3, at.x, at.y, h, d1, d2]
+        // What only surfaces have was refused.
+        [a, b, c, l1, l2, l3, at.x, at.y, h, d1, d2, 0.0, 0.0, 0.0, 0.0]
     }
 }
 
@@ -178,5 +186,22 @@ mod tests {
         let error = field("H + D2", 1.0).expect_err("D2 is direct grading's");
         assert_eq!(error.column, 5);
         assert!(error.problem.contains("`D2`"), "{error}");
+    }
+
+    // spec: S24
+    #[test]
+    fn variables_of_surfaces_are_refused_in_the_plane_with_the_reason() {
+        for (text, column) in [("k1", 1), ("0.1/abs(k2)", 9), ("x + J", 5), ("z", 1)] {
+            let error = field(text, 1.0).expect_err(text);
+            assert_eq!(error.column, column);
+            assert!(error.problem.contains("a plane domain has no curvature"), "{error}");
+        }
+        for text in ["a*L1", "x + D2", "L3"] {
+            let error = Expression::parse(text).expect("sound").demand_surface();
+            assert!(error.expect_err(text).problem.contains("in plane domains only"));
+        }
+        let all = Expression::parse("x + y + z + H + k1 + k2 + J").expect("sound");
+        assert_eq!(all.demand_surface(), Ok(()));
+        assert_eq!(all.on_surface([1.0, 2.0, 4.0], 8.0, [16.0, 32.0], 64.0), 127.0);
     }
 }

@@ -35,10 +35,18 @@ pub enum Variable {
     D1,
     /// Direct grading: distance of the opposite edge.
     D2,
+    /// Surface models: the third coordinate of the point.
+    Z,
+    /// Surface models: the principal curvature of larger magnitude.
+    K1,
+    /// Surface models: the other principal curvature.
+    K2,
+    /// Surface models: area of the surface for an area of (u, v), sqrt(E G - F^2).
+    J,
 }
 
 /// Number of variables.
-pub(super) const VARIABLES: usize = 11;
+pub(super) const VARIABLES: usize = 15;
 
 impl Variable {
     /// Every variable.
@@ -54,6 +62,10 @@ impl Variable {
         Self::H,
         Self::D1,
         Self::D2,
+        Self::Z,
+        Self::K1,
+        Self::K2,
+        Self::J,
     ];
 
     /// As it is written.
@@ -71,6 +83,10 @@ impl Variable {
             Self::H => "H",
             Self::D1 => "D1",
             Self::D2 => "D2",
+            Self::Z => "z",
+            Self::K1 => "k1",
+            Self::K2 => "k2",
+            Self::J => "J",
         }
     }
 }
@@ -143,6 +159,41 @@ impl Expression {
     #[must_use]
     pub fn column_of(&self, variable: Variable) -> Option<usize> {
         scan::column_of(&self.text, variable.name())
+    }
+
+    /// The value at a point of a surface, where `h` is the spacing of the model; NaN or infinite where
+    /// the arithmetic gives that.
+    #[must_use]
+    pub fn on_surface(&self, [x, y, z]: [f64; 3], h: f64, [k1, k2]: [f64; 2], area: f64) -> f64 {
+        let mut values = [f64::NAN; VARIABLES];
+        let given = [
+            (Variable::X, x),
+            (Variable::Y, y),
+            (Variable::Z, z),
+            (Variable::H, h),
+            (Variable::K1, k1),
+            (Variable::K2, k2),
+            (Variable::J, area),
+        ];
+        given.into_iter().for_each(|(variable, value)| values[variable as usize] = value);
+        self.value(&values)
+    }
+
+    /// Whether every variable has a meaning on a surface.
+    ///
+    /// # Errors
+    /// The column of the first that has none.
+    pub fn demand_surface(&self) -> Result<(), ExpressionError> {
+        use Variable::{H, J, K1, K2, X, Y, Z};
+        let known = [X, Y, Z, H, K1, K2, J];
+        let foreign = Variable::ALL.into_iter().filter(|variable| !known.contains(variable));
+        let first = foreign.filter_map(|v| Some((self.column_of(v)?, v.name()))).min();
+        first.map_or(Ok(()), |(column, name)| {
+            let problem = format!(
+                "`{name}` has a meaning in plane domains only; a surface has x, y, z, H, k1, k2 and J"
+            );
+            Err(ExpressionError { column, problem })
+        })
     }
 
     /// The value; NaN or infinite where the arithmetic gives that.

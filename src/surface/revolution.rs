@@ -3,7 +3,7 @@
 
 use super::{Side, SurfaceError, SurfaceJet, Tangents};
 use crate::curve::Curve;
-use crate::vector::{Vector, add, cross, dot, scale, sub, unit};
+use crate::vector::{Vector, add, cross, dot, norm, scale, sub, unit};
 use std::f64::consts::TAU;
 
 /// A surface of revolution.
@@ -13,7 +13,12 @@ pub struct Revolution {
     origin: Vector,
     axis: Vector,
     angles_deg: [f64; 2],
+    /// Whether corners of the profile are none: the surface is one piece.
+    is_joined: bool,
 }
+
+/// Tangents of a profile that differ by less than this (radians) are those of a smooth curve.
+const SMOOTH: f64 = 1e-6;
 
 impl Revolution {
     /// The surface that `profile` sweeps as it turns about the axis through `origin` from the first
@@ -32,7 +37,7 @@ impl Revolution {
         if !(turn > 0.0 && turn <= 360.0) {
             return Err(SurfaceError::Angle(turn));
         }
-        Ok(Self { profile, origin, axis, angles_deg })
+        Ok(Self { profile, origin, axis, angles_deg, is_joined: false })
     }
 
     pub(super) fn domain(&self) -> [[f64; 2]; 2] {
@@ -89,6 +94,13 @@ impl Revolution {
         }
     }
 
+    /// Whether a point, whose arm turned by a quarter is `ahead`, lies on the axis as far as the
+    /// arithmetic of the products tells.
+    fn is_on_axis(&self, p: Vector, ahead: Vector) -> bool {
+        let rounding = 4.0 * f64::EPSILON * (norm(p) + norm(self.origin));
+        norm(ahead) <= rounding
+    }
+
     /// The profile turned by an angle in degrees; points on the axis stay where they are.
     fn turned(&self, angle_deg: f64) -> Curve {
         if angle_deg == 0.0 || angle_deg == 360.0 {
@@ -97,7 +109,7 @@ impl Revolution {
         let (sine, cosine) = quadrant(angle_deg);
         self.profile.mapped(|p| {
             let [along, across, ahead] = self.split(sub(p, self.origin));
-            match is_on_axis(ahead) {
+            match self.is_on_axis(p, ahead) {
                 true => p,
                 false => {
                     let arm = add(along, add(scale(cosine, across), scale(sine, ahead)));
@@ -111,7 +123,7 @@ impl Revolution {
     fn parallel(&self, end: usize) -> Curve {
         let p = self.profile.ends()[end];
         let [along, across, ahead] = self.split(sub(p, self.origin));
-        if is_on_axis(ahead) {
+        if self.is_on_axis(p, ahead) {
             return Curve::clamped(1, vec![p, p]).expect("two points");
         }
         let turned = |angle: f64| self.turned(angle).ends()[end];
@@ -141,8 +153,22 @@ impl Revolution {
 
     /// One piece for each piece of the profile.
     pub(super) fn pieces(&self) -> Vec<Self> {
+        if self.is_joined {
+            return vec![self.clone()];
+        }
         let profiles = self.profile.pieces();
         profiles.into_iter().map(|profile| Self { profile, ..self.clone() }).collect()
+    }
+
+    /// The same surface as one piece if the tangent of its profile turns nowhere at once.
+    pub(super) fn joined(self) -> Self {
+        let pieces = self.profile.pieces();
+        let way = |piece: &Curve, end: usize| unit(piece.jet(piece.domain()[end]).first);
+        let is_joined = pieces.windows(2).all(|pair| {
+            let both = way(&pair[0], 1).zip(way(&pair[1], 0));
+            both.is_some_and(|(before, after)| norm(sub(before, after)) <= SMOOTH)
+        });
+        Self { is_joined, ..self }
     }
 
     /// The parameter of the arc at the west or east that belongs to the angle at a fraction of the
@@ -152,18 +178,12 @@ impl Revolution {
         let start = self.side(Side::South).ends();
         let reference = start.map(|p| self.split(sub(p, self.origin)));
         let [_, across, ahead] =
-            if is_on_axis(reference[0][2]) { reference[1] } else { reference[0] };
+            if self.is_on_axis(start[0], reference[0][2]) { reference[1] } else { reference[0] };
         let [_, arm, _] = self.split(sub(point, self.origin));
         let turn = libm::atan2(dot(arm, ahead), dot(arm, across));
         let turn = if turn < 0.0 { turn + TAU } else { turn };
         self.angles_deg[0].to_radians() + turn
     }
-}
-
-/// Whether a point whose arm turned by a quarter is this lies on the axis: exactly, as far as the
-/// arithmetic of the products tells.
-fn is_on_axis(ahead: Vector) -> bool {
-    ahead.iter().all(|x| *x == 0.0)
 }
 
 /// Sine and cosine of an angle in degrees, exact at quarter turns.

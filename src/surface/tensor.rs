@@ -1,5 +1,7 @@
 //! Tensor products of NURBS.
 
+mod cut;
+
 use super::{Side, SurfaceError, SurfaceJet, Tangents};
 use crate::curve::basis::Basis;
 use crate::curve::{
@@ -18,6 +20,8 @@ pub struct Tensor {
     counts: [usize; 2],
     net: Vec<Vector>,
     weights: Vec<f64>,
+    /// Whether lines of full multiplicity are no creases: the surface is one piece.
+    is_joined: bool,
 }
 
 /// Weighted sums for one order of derivatives in either direction.
@@ -62,7 +66,7 @@ impl Tensor {
         let (net, weights) = (rows.concat(), weights.concat());
         check_points(&net, &weights)
             .map_err(|error| SurfaceError::Spline { direction: 'u', error })?;
-        Ok(Self { degrees, knots, counts, net, weights })
+        Ok(Self { degrees, knots, counts, net, weights, is_joined: false })
     }
 
     /// The Bezier patch of a control net: degrees by the size of the net, parameters from 0 to 1.
@@ -174,6 +178,9 @@ impl Tensor {
 
     /// The pieces between knots repeated as often as the degree.
     pub(super) fn pieces(&self) -> Vec<Self> {
+        if self.is_joined {
+            return vec![self.clone()];
+        }
         let cuts = [0, 1].map(|i| cuts(&self.knots[i], self.degrees[i], self.counts[i]));
         let mut pieces = Vec::new();
         for u in cuts[0].windows(2) {
@@ -198,6 +205,7 @@ impl Tensor {
             counts: [rows[1] - rows[0] + 1, columns[1] - columns[0] + 1],
             net,
             weights,
+            is_joined: false,
         }
     }
 }

@@ -99,7 +99,7 @@ fn power_of_two(x: f64) -> f64 {
 pub(super) struct SurfaceChart<'a> {
     pub(super) sheet: Sheet<'a>,
     pub(super) field: &'a SpaceField,
-    pub(super) curvature: Curvature,
+    pub(super) curvature: &'a Curvature,
 }
 
 impl SurfaceChart<'_> {

@@ -95,12 +95,14 @@ pub(super) struct Outline {
     pub(super) pieces: Vec<Piece>,
     pub(super) points: Vec<Vector>,
     by_ends: BTreeMap<[[u64; 3]; 2], Vec<usize>>,
+    /// Whether curves of (u, v) only say near which place those in space lie.
+    are_hints: bool,
 }
 
 impl Outline {
     /// Finds the curves that patches share; none has nodes yet, but for those with a rule.
     pub(super) fn new(model: &Model) -> Result<Self, SurfaceMeshError> {
-        let mut outline = Self::default();
+        let mut outline = Self { are_hints: model.tolerance.is_some(), ..Self::default() };
         for named in &model.curves {
             let failed = |error| SurfaceMeshError::Curve { name: named.name.clone(), error };
             let all = named.rule.map(|rule| nodes(&named.curve, rule)).transpose();
@@ -182,17 +184,28 @@ impl Outline {
             TrimCurve::Space { curve, parameters } => {
                 let pieces: Vec<Curve> =
                     curve.pieces().into_iter().filter(|piece| !piece.is_point()).collect();
-                let given = parameters.as_ref().map(Curve::pieces);
-                if given.as_ref().is_some_and(|given| given.len() != pieces.len()) {
+                let parameters_of = parameters.as_ref();
+                let given = parameters_of.map(Curve::pieces);
+                let is_matched = given.as_ref().is_none_or(|given| given.len() == pieces.len());
+                if !is_matched && !self.are_hints {
                     let reason = "a curve has other corners in (u, v) than in space".to_owned();
                     return Err(SurfaceMeshError::Trim { name: patch.name.clone(), reason });
                 }
+                let [from, to] = curve.domain();
                 let cut = |(i, piece): (usize, Curve)| {
+                    let range = match is_matched {
+                        true => [0.0, 1.0],
+                        false => piece.domain().map(|t| (t - from) / (to - from)),
+                    };
                     let (curve, reversed) = self.find_or_add(piece, &name);
                     self.curves[curve].uses += 1;
                     let turned = |p: &Curve| if reversed { p.reversed() } else { p.clone() };
-                    let parameters = given.as_ref().map(|given| turned(&given[i]));
-                    Cut { curve, reversed, parameters }
+                    let of = |given: &Vec<Curve>| is_matched.then(|| turned(&given[i]));
+                    let parameters = given.as_ref().and_then(of);
+                    let parameters = parameters.or_else(|| parameters_of.map(turned));
+                    let [low, high] = range;
+                    let range = if reversed { [1.0 - high, 1.0 - low] } else { range };
+                    Cut { curve, reversed, parameters, range }
                 };
                 Ok(pieces.into_iter().enumerate().map(cut).collect())
             }
@@ -213,7 +226,8 @@ impl Outline {
                     (shared.marker, shared.uses) = (*marker, 1);
                     let curve = self.curves.len();
                     self.curves.push(shared);
-                    cuts.push(Cut { curve, reversed: false, parameters: Some(parameters) });
+                    let (parameters, range) = (Some(parameters), [0.0, 1.0]);
+                    cuts.push(Cut { curve, reversed: false, parameters, range });
                 }
                 Ok(cuts)
             }
@@ -329,13 +343,14 @@ impl Outline {
     ///
     /// # Errors
     /// What is wrong with a loop.
-    pub(super) fn rim(&self, piece: &Piece, tolerance: f64) -> Result<Rim, String> {
+    pub(super) fn rim(&self, piece: &Piece, [tolerance, off]: [f64; 2]) -> Result<Rim, String> {
         let mut rim = Rim::default();
         if !piece.has_outline {
             rim.add(&self.around(piece));
         }
         let Piece { surface, loops, .. } = piece;
-        let all = Loops { surface, curves: &self.curves, points: &self.points, tolerance };
+        let (curves, points, are_hints) = (&self.curves, &self.points, self.are_hints);
+        let all = Loops { surface, curves, points, tolerance, off, are_hints };
         for (i, cuts) in loops.iter().enumerate() {
             let mut nodes = all.nodes(cuts)?;
             let is_hole = i > 0 || !piece.has_outline;

@@ -21,6 +21,8 @@ pub(super) struct Cut {
     pub(super) reversed: bool,
     /// The curve in (u, v), in the direction of the curve in space; none where it is to be found.
     pub(super) parameters: Option<Curve>,
+    /// The part of that curve which belongs to this one, as fractions of its range.
+    pub(super) range: [f64; 2],
 }
 
 /// What loops are made of.
@@ -28,13 +30,20 @@ pub(super) struct Loops<'a> {
     pub(super) surface: &'a Surface,
     pub(super) curves: &'a [Shared],
     pub(super) points: &'a [Vector],
-    /// How far off is rounding.
+    /// How far off is rounding, or what the model says is the same.
     pub(super) tolerance: f64,
+    /// A point that is farther from the surface than this does not lie on it.
+    pub(super) off: f64,
+    /// Whether curves of (u, v) only say near which place those in space lie.
+    pub(super) are_hints: bool,
 }
 
 /// A point of a curve that is farther from the surface than this fraction of the model's diagonal
-/// does not lie on it.
-const OFF: f64 = 1e-6;
+/// does not lie on it, where the model has no tolerance of its own.
+pub(super) const OFF: f64 = 1e-6;
+/// A place that a curve of (u, v) gives is taken when its point is this much nearer than what is the
+/// same.
+const SETTLED: f64 = 1e-3;
 /// Parameters of one point found twice agree to this fraction of the domain.
 const PARAMETERS: f64 = 1e-6;
 
@@ -92,8 +101,9 @@ impl Loops<'_> {
                     let [low, high] = shared.curve.domain();
                     let [start, end] = parameters.domain();
                     let part = (shared.nodes[i] - low) / (high - low);
+                    let part = cut.range[0] + part * (cut.range[1] - cut.range[0]);
                     let [u, v, _] = parameters.at(start + part * (end - start));
-                    [u, v]
+                    self.settled([u, v], self.points[vertex as usize])
                 }
                 None => {
                     let near = list.last().or(before).map(|node| [node.u, node.v]);
@@ -103,6 +113,17 @@ impl Loops<'_> {
             list.push(self.inside(Node { u, v, vertex })?);
         }
         Ok(list)
+    }
+
+    /// The place of a point near one that a curve of (u, v) gives.
+    fn settled(&self, near: [f64; 2], p: Vector) -> [f64; 2] {
+        if !self.are_hints {
+            return near;
+        }
+        let domain = self.surface.domain();
+        let near = [0, 1].map(|i| near[i].clamp(domain[i][0], domain[i][1]));
+        let is_there = distance(self.surface.at(near[0], near[1]), p) <= SETTLED * self.tolerance;
+        if is_there { near } else { descend(self.surface, near, p) }
     }
 
     /// A node that lies in the rectangle of parameters, and whose point is that of the surface.
@@ -119,8 +140,9 @@ impl Loops<'_> {
         let (u, v) = (u.clamp(domain[0][0], domain[0][1]), v.clamp(domain[1][0], domain[1][1]));
         let point = self.points[vertex as usize];
         let off = distance(self.surface.at(u, v), point);
-        if off > OFF / super::outline::ROUNDING * self.tolerance {
-            return Err(format!("a loop is {off:e} off the surface at {point:?}"));
+        if off > self.off {
+            let help = if self.are_hints { "; a larger --weld allows for it" } else { "" };
+            return Err(format!("a loop is {off:e} off the surface at {point:?}{help}"));
         }
         Ok(Node { u, v, vertex })
     }

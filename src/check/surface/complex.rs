@@ -123,7 +123,8 @@ pub(super) struct Complex {
 
 impl Complex {
     pub(super) fn of(model: &Model) -> Self {
-        let tolerance = if model.trims.is_empty() { 0.0 } else { ROUNDING * model.diagonal() };
+        let rounding = if model.trims.is_empty() { 0.0 } else { ROUNDING * model.diagonal() };
+        let tolerance = model.tolerance.unwrap_or(0.0).max(rounding);
         let (curves, poles) = (Vec::new(), BTreeSet::new());
         let mut complex = Self { curves, poles, faces: 0, tolerance };
         let mut known: ByEnds = BTreeMap::new();

@@ -2,8 +2,8 @@
 
 use crate::format::Encoding;
 use crate::format::text::TextOut;
-use crate::format::view::MeshView;
-use crate::format::vtk_cell::{LINE, TRIANGLE};
+use crate::format::view::{Face, MeshView};
+use crate::format::vtk_cell::{LINE, QUADRILATERAL, TRIANGLE};
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use flate2::Compression;
@@ -88,7 +88,7 @@ impl VtuWriter<'_, '_> {
     }
 
     fn piece(&mut self, mesh: MeshView) -> io::Result<()> {
-        let cells = mesh.triangles().len() + mesh.edges().len();
+        let cells = mesh.face_count() + mesh.edges().len();
         let mut piece = BytesStart::new("Piece");
         piece.push_attribute(("NumberOfPoints", mesh.point_count().to_string().as_str()));
         piece.push_attribute(("NumberOfCells", cells.to_string().as_str()));
@@ -109,33 +109,35 @@ impl VtuWriter<'_, '_> {
     }
 
     fn cells(&mut self, mesh: MeshView) -> io::Result<()> {
-        let (triangles, edges) = (mesh.triangles(), mesh.edges());
-        self.data_array("connectivity", 1, 3 * triangles.len() + 2 * edges.len(), || {
+        let (faces, each, edges) = (mesh.face_count(), mesh.face_corners(), mesh.edges());
+        self.data_array("connectivity", 1, each * faces + 2 * edges.len(), || {
             let ends = edges.iter().flat_map(|edge| edge.vertices);
-            triangles.iter().copied().flatten().chain(ends).map(i64::from)
+            let of_face = |face: Face| (0..each).map(move |i| face.corners()[i]);
+            mesh.faces().flat_map(of_face).chain(ends).map(i64::from)
         })?;
-        let cells = triangles.len() + edges.len();
-        let corners = 3 * triangles.len() as i64;
+        let cells = faces + edges.len();
+        let corners = (each * faces) as i64;
         self.data_array("offsets", 1, cells, || {
-            let of_triangles = (1..=triangles.len() as i64).map(|rank| 3 * rank);
-            of_triangles.chain((1..=edges.len() as i64).map(move |rank| corners + 2 * rank))
+            let of_faces = (1..=faces as i64).map(|rank| each as i64 * rank);
+            of_faces.chain((1..=edges.len() as i64).map(move |rank| corners + 2 * rank))
         })?;
         self.data_array("types", 1, cells, || {
-            let of_triangles = std::iter::repeat_n(TRIANGLE as u8, triangles.len());
-            of_triangles.chain(std::iter::repeat_n(LINE as u8, edges.len()))
+            let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
+            std::iter::repeat_n(code as u8, faces)
+                .chain(std::iter::repeat_n(LINE as u8, edges.len()))
         })
     }
 
     fn cell_data(&mut self, mesh: MeshView) -> io::Result<()> {
-        let (triangles, edges) = (mesh.triangles().len(), mesh.edges());
-        let cells = triangles + edges.len();
+        let (faces, edges) = (mesh.face_count(), mesh.edges());
+        let cells = faces + edges.len();
         self.data_array("region", 1, cells, || {
-            let of_triangles = (0..triangles).map(|index| mesh.region(index, 0));
-            of_triangles.chain(std::iter::repeat_n(0, edges.len()))
+            let of_faces = (0..faces).map(|index| mesh.face_region(index, 0));
+            of_faces.chain(std::iter::repeat_n(0, edges.len()))
         })?;
         self.data_array("marker", 1, cells, || {
             let of_edges = edges.iter().map(|edge| edge.marker);
-            std::iter::repeat_n(0, triangles).chain(of_edges)
+            std::iter::repeat_n(0, faces).chain(of_edges)
         })
     }
 
