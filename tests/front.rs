@@ -439,6 +439,44 @@ fn default_quality_on_regular_domains() {
     assert!(2.0 * 3_f64.sqrt() * worst_shape(&mesh) > 0.6, "worst {}", worst_shape(&mesh));
 }
 
+/// A strip whose bottom is cut in thousandths for a tenth, and then not at all; `left` leads back.
+fn jump_of_1000(left: &[[f64; 2]]) -> Sketch {
+    let fine = (0..=100).map(|i| Point2::new(f64::from(i - 100) / 1000.0, 0.0));
+    let right = [[1.0, 0.0], [1.0, 1.0]];
+    let rest = right.iter().chain(left).map(|&[x, y]| Point2::new(x, y));
+    Sketch::default().add_loop(fine.chain(rest), 1)
+}
+
+// spec: F9 I2 I5
+#[test]
+fn fans_stay_as_good_as_they_were_laid() {
+    let straight = [
+        [0.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, 0.0],
+        [-0.6, 0.0],
+        [-0.35, 0.0],
+        [-0.22, 0.0],
+        [-0.16, 0.0],
+        [-0.13, 0.0],
+        [-0.115, 0.0],
+        [-0.107, 0.0],
+        [-0.103, 0.0],
+    ];
+    // The other end of the fine edges is a right angle with an edge of length 1.
+    let square = [[-0.1, 1.0]];
+    for (name, sketch, least) in
+        [("180", jump_of_1000(&straight), 4.812), ("90", jump_of_1000(&square), 16.08)]
+    {
+        for level in 0..=2 {
+            let improve = ImproveOptions::level(level);
+            let meshed = sketch.mesh(&Options { improve, ..Options::default() });
+            let worst = worst_aspect(&meshed.mesh);
+            assert!((0.99 * least..=1.01 * least).contains(&worst), "{name}, {level}: {worst}");
+        }
+    }
+}
+
 /// The mesh that a pool of so many threads makes.
 fn with_threads(count: usize, sketch: &Sketch, options: &Options) -> Mesh {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("a pool");
@@ -461,14 +499,21 @@ fn searches_on_several_threads_give_the_same_bytes() {
     }
 }
 
-/// Mean of R/(2r).
-fn mean_aspect(mesh: &Mesh) -> f64 {
-    let aspect = |&t: &[u32; 3]| {
+/// R/(2r) of each triangle.
+fn aspects(mesh: &Mesh) -> impl Iterator<Item = f64> {
+    mesh.triangles.iter().map(|&t| {
         let [a, b, c] = corners(mesh, t);
         let (x, y, z) = (b.distance(c), c.distance(a), a.distance(b));
         x * y * z / ((y + z - x) * (z + x - y) * (x + y - z))
-    };
-    mesh.triangles.iter().map(aspect).sum::<f64>() / mesh.triangles.len() as f64
+    })
+}
+
+fn mean_aspect(mesh: &Mesh) -> f64 {
+    aspects(mesh).sum::<f64>() / mesh.triangles.len() as f64
+}
+
+fn worst_aspect(mesh: &Mesh) -> f64 {
+    aspects(mesh).fold(0.0, f64::max)
 }
 
 // spec: I21

@@ -222,10 +222,13 @@ fn what_is_left_out_is_told_and_a_file_without_faces_is_refused() {
     assert!(told.contains("type 198") && told.starts_with("line "), "{told}");
 }
 
+/// Breaks a file.
+type Change = fn(&mut Writer);
+
 // spec: X66
 #[test]
 fn broken_records_are_refused_with_their_line() {
-    let broken = |change: fn(&mut Writer)| {
+    let broken = |change: Change| {
         let mut file = Writer::default();
         tube(&mut file);
         change(&mut file);
@@ -233,7 +236,7 @@ fn broken_records_are_refused_with_their_line() {
         assert!(told.starts_with("line "), "{told}");
         told
     };
-    let change: [(fn(&mut Writer), &str); 7] = [
+    let changes: [(Change, &str); 7] = [
         (|f| f.replace(102, "1099511627776,1"), "must be between 1 and 1"),
         (|f| f.replace(102, "2,1,999999"), "odd number from 1 to"),
         (|f| f.replace(102, "2,1,-3"), "odd number"),
@@ -242,7 +245,7 @@ fn broken_records_are_refused_with_their_line() {
         (|f| f.replace(110, "0,0,0,1e999,0,2"), "expected a coordinate"),
         (|f| f.replace(110, "0,0"), "the end of the entity"),
     ];
-    for (i, (change, word)) in change.into_iter().enumerate() {
+    for (i, (change, word)) in changes.into_iter().enumerate() {
         let told = broken(change);
         assert!(told.contains(word), "{i}: {told}");
     }

@@ -263,7 +263,7 @@ fn what_only_one_system_has_stands_behind_a_condition() {
             let above = &lines[i.saturating_sub(NEAR)..i];
             assert!(
                 lines[..20.min(i)].iter().any(|line| line.starts_with("#![cfg("))
-                    || above.iter().any(|line| is_conditional(line)),
+                    || above.iter().any(is_conditional),
                 "{}:{}: `{word}` without #[cfg(unix)] or the like",
                 name(&path),
                 i + 1

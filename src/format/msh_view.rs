@@ -140,7 +140,7 @@ mod tests {
     fn a_file_without_parameters_has_none_and_gaps_are_nan() {
         let text = String::from_utf8(written(Encoding::Ascii, Default::default())).expect("text");
         let start = text.find("$NodeData").expect("a view");
-        assert_eq!(read_parameters(text[..start].as_bytes()).expect("sound"), None);
+        assert_eq!(read_parameters(&text.as_bytes()[..start]).expect("sound"), None);
         let other = text.replace("\"uv\"", "\"wind\"");
         assert_eq!(read_parameters(other.as_bytes()).expect("sound"), None);
         let part = text.replace("0\n3\n3\n1 0.1 -2 0\n", "0\n3\n2\n");

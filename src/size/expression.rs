@@ -274,7 +274,8 @@ impl MakeOperators<f64> for Functions {
 mod tests {
     use super::*;
 
-    const VALUES: Values = [0.2, 0.3, 0.5, 1.0, 2.0, 4.0, -3.0, 7.0, 0.5, 8.0, 9.0];
+    const VALUES: Values =
+        [0.2, 0.3, 0.5, 1.0, 2.0, 4.0, -3.0, 7.0, 0.5, 8.0, 9.0, -5.0, 0.25, -0.125, 6.0];
 
     fn value(text: &str) -> f64 {
         Expression::parse(text).unwrap_or_else(|e| panic!("{text}: {e}")).value(&VALUES)
@@ -297,6 +298,7 @@ mod tests {
             ("2^10", 1024.0),
             ("2^-1", 0.5),
             ("-x", 3.0),
+            ("z + k1*k2 + J", 0.968_75),
             ("-(x^2)", -9.0),
             ("min(H, 0.1 + abs(x))", 0.5),
             ("max(min(y, 5), 2)", 5.0),

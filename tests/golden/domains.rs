@@ -58,7 +58,7 @@ pub const GOLDENS: [Golden; 14] = [
     golden("star", Form::Json, &[], 2.05, star),
     golden("nested_islands", Form::Json, &["--method", "direct"], 1.2, nested_islands),
     // The boundary is not split: fans at the corners of its long edges are the best there is.
-    golden("jump", Form::Poly, &[], 5.95, jump),
+    golden("jump", Form::Poly, &[], 5.5, jump),
     golden("constrained", Form::Poly, &["--gradation", "mean", "--clamp", "1.5"], 2.5, constrained),
     golden("background", Form::Poly, &["--method", "delaunay-initial"], 18.0, plate_with_holes),
 ];
