@@ -1,7 +1,9 @@
 //! The JSON schema of surface models, the reader and the examples say the same.
 
+#[path = "common/models.rs"]
+mod models;
+
 use serde_json::{Value, json};
-use std::path::Path;
 use trigrade::format::model_json;
 
 fn validator() -> jsonschema::Validator {
@@ -11,13 +13,9 @@ fn validator() -> jsonschema::Validator {
 }
 
 fn examples() -> Vec<(String, Value)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models");
-    let read = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.expect("an entry").path();
-        let text = std::fs::read_to_string(&path).expect("readable");
-        (path.display().to_string(), serde_json::from_str(&text).expect("JSON"))
-    };
-    std::fs::read_dir(folder).expect("the examples").map(read).collect()
+    let read =
+        |(name, bytes): (String, Vec<u8>)| (name, serde_json::from_slice(&bytes).expect("JSON"));
+    models::examples().into_iter().map(read).collect()
 }
 
 // spec: X64

@@ -1,7 +1,8 @@
 //! Surface models through the mesher and both checks: the examples, and surfaces that fight back.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+#[path = "common/models.rs"]
+mod models;
+
 use trigrade::check::surface::{SurfaceLimits, SurfaceReport, against_model};
 use trigrade::check::{CheckOptions, Dimension, Id, Metric, Report, check};
 use trigrade::curve::Curve;
@@ -17,18 +18,12 @@ use trigrade::surface_mesher::{SurfaceMeshError, SurfaceMeshed, SurfaceOptions, 
 use trigrade::vector::{Vector, norm};
 
 fn examples() -> Vec<(String, Model)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models");
-    let entries = fs::read_dir(folder).expect("the folder of examples");
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
-    paths.sort();
-    let read = |path: &PathBuf| {
-        let bytes = fs::read(path).expect("readable");
-        assert!(model_json::is_model(&bytes), "{}", path.display());
-        let model = model_json::read(&bytes).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+    let read = |(name, bytes): (String, Vec<u8>)| {
+        assert!(model_json::is_model(&bytes), "{name}");
+        let model = model_json::read(&bytes).unwrap_or_else(|e| panic!("{name}: {e}"));
         (name, model)
     };
-    paths.iter().map(read).collect()
+    models::examples().into_iter().map(read).collect()
 }
 
 fn patch(surface: Surface) -> Patch {
