@@ -142,9 +142,15 @@ fn write_ticks(out: &mut String, width: f64, (layer, summary): (&Layer, &Summary
 const SMALL: &str = " font-size=\"10\" fill=\"#4a4f57\"";
 const NAME: &str = " font-size=\"11\" fill=\"#22262c\"";
 
-/// Whether a value lies outside the low (0) or high (1) end of the range.
+/// Whether a value lies outside the low (0) or high (1) end of a range, by more than rounding.
+pub(super) fn is_outside(range: [f64; 2], end: usize, value: f64) -> bool {
+    let rounding = 1e-9 * (range[1] - range[0]);
+    if end == 0 { value < range[0] - rounding } else { value > range[1] + rounding }
+}
+
+/// Whether a value of the layer lies outside the low (0) or high (1) end of its range.
 fn beyond(layer: &Layer, summary: &Summary, end: usize) -> bool {
-    let outside = |v: &f64| if end == 0 { *v < layer.range[0] } else { *v > layer.range[1] };
+    let outside = |v: &f64| is_outside(layer.range, end, *v);
     let worst_end = usize::from(layer.better == Better::Low);
     if end == worst_end { outside(&summary.worst) } else { layer.values.iter().any(outside) }
 }
@@ -185,6 +191,7 @@ mod tests {
         let mut out = String::new();
         write(&mut out, [0.0, 0.0], 300.0, (&layer, &summary), Palette::default());
         assert!(out.contains("\u{2264} 1<") && out.contains("\u{2265} 2<"), "{out}");
+        assert!(!is_outside([1.0, 2.0], 0, 1.0 - f64::EPSILON), "equilateral but for rounding");
         let inside = Layer { range: [0.0, 4.0], ..layer };
         let mut out = String::new();
         write(&mut out, [0.0, 0.0], 300.0, (&inside, &summary), Palette::default());

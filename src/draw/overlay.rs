@@ -1,6 +1,7 @@
 //! Histograms of two meshes laid over each other.
 
 use super::layer::{Better, Layer};
+use super::legend::is_outside;
 use super::text::{self, Anchor};
 use super::{DrawError, Options, Panel, check_input, page, perspective};
 use crate::mesh::MeshData;
@@ -151,7 +152,7 @@ fn write_ticks(out: &mut String, width: f64, base: f64, (pair, range): (&[Layer;
     let w = text::pixels(width);
     let _ = writeln!(out, "<path d=\"M0 {base}H{w}\" stroke=\"#5a6068\" stroke-width=\"0.8\"/>");
     let values = || pair.iter().flat_map(|layer| &layer.values);
-    let beyond = [values().any(|v| *v < range[0]), values().any(|v| *v > range[1])];
+    let beyond = [0, 1].map(|end| values().any(|v| is_outside(range, end, *v)));
     for i in 0..=4 {
         let t = f64::from(i) / 4.0;
         let value = text::short(range[0] * (1.0 - t) + range[1] * t);
