@@ -39,6 +39,8 @@ pub mod poly;
 mod scalar;
 mod scan;
 mod sms_2dm;
+#[cfg(feature = "step")]
+pub mod step;
 mod stl;
 mod su2;
 #[cfg(test)]

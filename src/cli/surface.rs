@@ -38,7 +38,7 @@ use std::time::Duration;
 /// Exit code 2: the file cannot be read.
 pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     let path = &arguments.domain;
-    let known = ["json", "bpt", "igs", "iges"];
+    let known = ["json", "bpt", "igs", "iges", "step", "stp", "p21"];
     let is_one = |e: &OsStr| known.iter().any(|known| e.eq_ignore_ascii_case(known));
     refuse_step(path)?;
     match arguments.reading.from.as_deref() {
@@ -48,14 +48,15 @@ pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
     }
 }
 
-/// STEP files are not read; what to do instead is said before anything is tried.
+/// Without the feature `step`, STEP files are not read; what to do instead is said before anything is
+/// tried.
 fn refuse_step(path: &Path) -> Result<(), Failure> {
     let is_step = |e: &OsStr| ["step", "stp", "p21"].iter().any(|k| e.eq_ignore_ascii_case(k));
-    if !path.extension().is_some_and(is_step) {
+    if cfg!(feature = "step") || !path.extension().is_some_and(is_step) {
         return Ok(());
     }
     let diagnostic = Diagnostic::new("STEP files are not read").rule("X71").at(path.display());
-    let help = "export the surfaces as IGES (trimmed surfaces, not solids), or as NURBS in JSON; a mesh of \
+    let help = "a build with `--features step` reads them; or export the surfaces as IGES (trimmed surfaces, not solids), or as NURBS in JSON; a mesh of \
                 the part, as STL or OBJ, goes through `trigrade remesh`";
     Err(Failure::cannot_run(diagnostic.help(help)))
 }

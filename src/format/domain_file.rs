@@ -212,6 +212,9 @@ pub enum Problem {
     /// An entity of an IGES file that is not read, or makes no sense.
     #[error("{0}")]
     Entity(String),
+    /// A record of a STEP file that is not read, or makes no sense.
+    #[error("{0}")]
+    Step(String),
     /// A name that the file does not define, or defines twice.
     #[error("{0}")]
     Name(String),
@@ -235,6 +238,7 @@ impl Problem {
             Self::Surface(_) => "S3",
             Self::Joint { .. } => "S5",
             Self::Entity(_) => "X66",
+            Self::Step(_) => "X73",
             Self::Name(_) => "S7",
         }
     }

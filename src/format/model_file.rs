@@ -1,6 +1,8 @@
 //! Files of surface models: which form a file has, and reading it.
 
 use super::domain_file::{DomainReadError, without_mark};
+#[cfg(feature = "step")]
+use super::step;
 use super::{bpt, iges, model_json, nurbs_json};
 use crate::model::Model;
 use serde_json::Value;
@@ -17,20 +19,30 @@ pub enum ModelForm {
     Nurbs,
     /// IGES, fixed-length ASCII.
     Iges,
+    /// STEP, ISO 10303-21.
+    #[cfg(feature = "step")]
+    Step,
 }
 
 impl ModelForm {
     /// All forms with the names that `--from` takes.
-    pub const ALL: [(Self, &'static str); 4] =
-        [(Self::Json, "model"), (Self::Bpt, "bpt"), (Self::Nurbs, "nurbs"), (Self::Iges, "iges")];
+    pub const ALL: &'static [(Self, &'static str)] = &[
+        (Self::Json, "model"),
+        (Self::Bpt, "bpt"),
+        (Self::Nurbs, "nurbs"),
+        (Self::Iges, "iges"),
+        #[cfg(feature = "step")]
+        (Self::Step, "step"),
+    ];
 
     /// The form of this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|(_, known)| *known == name).map(|(form, _)| form)
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|&(form, _)| form)
     }
 
-    /// The form of a file: by the extension `bpt`, `igs` or `iges` in any case, or JSON by its keys:
+    /// The form of a file: by the extension `bpt`, `igs` or `iges` (with the feature `step` also `step`,
+    /// `stp`, `p21`) in any case, or JSON by its keys:
     /// `patches` or `"format": "trigrade-model"`, `shape` or `degree_u` and `degree_v`.
     #[must_use]
     pub fn of(path: &Path, bytes: &[u8]) -> Option<Self> {
@@ -38,6 +50,8 @@ impl ModelForm {
         match extension.to_ascii_lowercase().as_str() {
             "bpt" => Some(Self::Bpt),
             "igs" | "iges" => Some(Self::Iges),
+            #[cfg(feature = "step")]
+            "step" | "stp" | "p21" => Some(Self::Step),
             "json" => Self::of_json(bytes),
             _ => None,
         }
@@ -67,6 +81,8 @@ pub fn read_model(bytes: &[u8], form: ModelForm) -> Result<Model, DomainReadErro
         ModelForm::Bpt => bpt::read(bytes),
         ModelForm::Nurbs => nurbs_json::read(bytes),
         ModelForm::Iges => iges::read(bytes),
+        #[cfg(feature = "step")]
+        ModelForm::Step => step::read(bytes),
     }
 }
 
