@@ -56,8 +56,9 @@ fn refuse_step(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let diagnostic = Diagnostic::new("STEP files are not read").rule("X71").at(path.display());
-    let help = "a build with `--features step` reads them; or export the surfaces as IGES (trimmed surfaces, not solids), or as NURBS in JSON; a mesh of \
-                the part, as STL or OBJ, goes through `trigrade remesh`";
+    let help = "a build with `--features step` reads them; or export the surfaces as IGES (trimmed \
+                surfaces, not solids), or as NURBS in JSON; a mesh of the part, as STL or OBJ, goes \
+                through `trigrade remesh`";
     Err(Failure::cannot_run(diagnostic.help(help)))
 }
 

@@ -315,7 +315,7 @@ impl Reader<'_> {
             rings.push(curves);
         }
         let outline = outer.map(|i| rings.remove(i));
-        Ok(Cut { surface, trim: Some(Trim { outline, holes: rings }) })
+        Ok(Cut { surface: surface.joined(), trim: Some(Trim { outline, holes: rings }) })
     }
 }
 
