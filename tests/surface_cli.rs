@@ -245,23 +245,6 @@ fn an_iges_file_is_meshed_checked_and_welded() {
     }
 }
 
-// spec: X71
-#[test]
-#[cfg(not(feature = "step"))]
-fn step_files_are_refused_with_what_to_do_instead() {
-    let folder = tempfile::tempdir().expect("a temporary directory");
-    let mesh = text(&folder.path().join("a.vtu"));
-    for name in ["part.step", "part.STP"] {
-        let path = text(&folder.path().join(name));
-        std::fs::write(&path, "ISO-10303-21;\n").expect("writable");
-        for arguments in [["mesh", &path, "-o", &mesh], ["check", &mesh, "--surface", &path]] {
-            let told = assert_exit(&run(&arguments), 2);
-            assert!(told.contains("STEP files are not read") && told.contains("IGES"), "{told}");
-            assert!(told.contains("--features step"), "{told}");
-        }
-    }
-}
-
 // spec: K39
 #[test]
 fn grids_of_domains_and_models_are_written_as_quadrilaterals() {

@@ -51,8 +51,12 @@ pub fn is_model(arguments: &MeshArguments) -> Result<bool, Failure> {
 /// Without the feature `step`, STEP files are not read; what to do instead is said before anything is
 /// tried.
 fn refuse_step(path: &Path) -> Result<(), Failure> {
+    if cfg!(feature = "step") { Ok(()) } else { demand_no_step(path) }
+}
+
+fn demand_no_step(path: &Path) -> Result<(), Failure> {
     let is_step = |e: &OsStr| ["step", "stp", "p21"].iter().any(|k| e.eq_ignore_ascii_case(k));
-    if cfg!(feature = "step") || !path.extension().is_some_and(is_step) {
+    if !path.extension().is_some_and(is_step) {
         return Ok(());
     }
     let diagnostic = Diagnostic::new("STEP files are not read").rule("X71").at(path.display());
@@ -305,4 +309,22 @@ fn as_json(found: &SurfaceReport) -> Value {
 pub fn tell(found: &SurfaceReport, outcome: &mut Outcome) {
     outcome.text.push_str(&format!("\n  {:<11}{}", "surface", measures(found)));
     outcome.json["surface"] = as_json(found);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // spec: X71
+    #[test]
+    fn step_files_are_refused_with_what_to_do_instead() {
+        for name in ["part.step", "part.STP", "a/b.p21"] {
+            let failure = demand_no_step(Path::new(name)).expect_err(name);
+            assert_eq!(failure.exit, 2, "{name}");
+            let told = failure.diagnostics[0].to_string();
+            assert!(told.contains("STEP files are not read") && told.contains("IGES"), "{told}");
+            assert!(told.contains("--features step") && told.contains(name), "{told}");
+        }
+        assert!(demand_no_step(Path::new("step.json")).is_ok());
+    }
 }
