@@ -1,7 +1,7 @@
 //! Gmsh's `.geo` script: points, lines, curve loops (all counterclockwise), plane surfaces; constraints
 //! are embedded.
 
-use super::nesting::levels;
+use super::nesting::{constraints_are_inside, levels};
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
 use crate::domain::validate::loop_orientation;
@@ -12,6 +12,9 @@ use std::fmt::Write;
 pub fn write(domain: &Domain) -> Result<String, ExportError> {
     let what = "which of these touching loops lies in which";
     let levels = levels(domain).ok_or_else(|| BoundaryForm::Geo.cannot_say(what))?;
+    if !constraints_are_inside(domain) {
+        return Err(BoundaryForm::Geo.cannot_say("segments and points outside the domain"));
+    }
     let mut out = String::from("SetFactory(\"Built-in\");\n");
     let mut say = |text: std::fmt::Arguments| {
         // Writing to a string cannot fail.

@@ -1,6 +1,6 @@
 //! Netgen's `.in2d` (version 2): points, and segments that name the domain on either side.
 
-use super::nesting::levels;
+use super::nesting::{constraints_are_inside, levels};
 use super::{BoundaryForm, ExportError};
 use crate::domain::Domain;
 use crate::domain::validate::loop_orientation;
@@ -11,6 +11,9 @@ use std::fmt::Write;
 pub fn write(domain: &Domain) -> Result<String, ExportError> {
     let what = "which of these touching loops lies in which";
     let levels = levels(domain).ok_or_else(|| BoundaryForm::In2d.cannot_say(what))?;
+    if !constraints_are_inside(domain) {
+        return Err(BoundaryForm::In2d.cannot_say("segments and points outside the domain"));
+    }
     if !domain.isolated_points().is_empty() {
         return Err(BoundaryForm::In2d.cannot_say("isolated points"));
     }

@@ -79,3 +79,24 @@ pub fn levels(domain: &Domain) -> Option<Vec<Level>> {
     let innermost = |all: &Vec<usize>| all.iter().copied().max_by_key(|&j| around[j].len());
     Some(around.iter().map(|all| Level { depth: all.len(), around: innermost(all) }).collect())
 }
+
+/// Whether a point lies in the domain by the even-odd rule; `None` when it lies on a loop.
+fn is_in_domain(domain: &Domain, p: Point2) -> Option<bool> {
+    let inside = (0..domain.loops.len()).map(|of| is_inside(domain, of, p));
+    inside.into_iter().try_fold(false, |parity, inside| Some(parity ^ inside?))
+}
+
+/// Whether all segments and isolated points lie in the domain. A segment that crosses no loop lies
+/// where one of its ends or its middle does; one with all three on loops counts as outside.
+pub fn constraints_are_inside(domain: &Domain) -> bool {
+    let point = |v: usize| domain.points[v];
+    let is_in = |points: &[Point2]| {
+        points.iter().find_map(|&p| is_in_domain(domain, p)).unwrap_or_default()
+    };
+    let segment_is_in = |[a, b]: [u32; 2]| {
+        let [p, q] = [a, b].map(|v| point(v as usize));
+        is_in(&[p, q, Point2::new(0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y)])
+    };
+    domain.segments.iter().all(|s| segment_is_in(s.vertices))
+        && domain.isolated_points().into_iter().all(|v| is_in(&[point(v)]))
+}

@@ -1,6 +1,7 @@
 //! What is written means what the boundary means.
 
 use super::*;
+use crate::domain::Segment;
 use crate::domain::validate::validate;
 use crate::format::domain_file::{DomainForm, ReadOptions, read_domain};
 use crate::point::Point2;
@@ -139,6 +140,27 @@ fn what_a_format_cannot_say_is_refused() {
     assert!(export(&domain, BoundaryForm::Geo).is_err());
     assert!(!BoundaryForm::Poly.carries("D10") && BoundaryForm::Json.carries("D10"));
     assert!(BoundaryForm::Poly.carries("D8"));
+}
+
+#[test]
+fn segments_in_a_hole_are_not_embedded_in_the_surface() {
+    let ring = |a: f64, b: f64| vec![[a, a], [b, a], [b, b], [a, b]];
+    let domain = Domain::of_rings(&[ring(0.0, 8.0), ring(2.0, 6.0)]);
+    let with = |ends: [[f64; 2]; 2]| {
+        let mut domain = domain.clone();
+        let first = domain.points.len() as u32;
+        domain.points.extend(ends.map(Point2::from));
+        domain.segments.push(Segment { vertices: [first, first + 1], marker: 3 });
+        domain
+    };
+    for form in [BoundaryForm::Geo, BoundaryForm::In2d] {
+        assert!(export(&with([[1.0, 1.0], [1.0, 4.0]]), form).is_ok());
+        // From a corner of the hole into it, and along the diagonal from corner to corner.
+        for ends in [[[2.0, 2.0], [3.0, 3.5]], [[2.0, 2.0], [6.0, 6.0]]] {
+            let error = export(&with(ends), form).expect_err("in the hole").to_string();
+            assert!(error.ends_with("segments and points outside the domain"), "{error}");
+        }
+    }
 }
 
 #[test]
