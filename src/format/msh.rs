@@ -223,17 +223,6 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<MeshData, ReadError> 
     mesh.finish(&scanner)
 }
 
-/// The number of each node with its place among the points, and how many there are.
-pub(crate) fn numbers(bytes: &[u8]) -> Result<(Vec<(i64, usize)>, usize), ReadError> {
-    let mesh = read(bytes, &ReadOptions::default())?;
-    let count = mesh.points.len();
-    let own: Vec<(i64, usize)> = match mesh.point_numbers.is_empty() {
-        true => (0..count).map(|i| (i as i64, i)).collect(),
-        false => mesh.point_numbers.into_iter().zip(0..).collect(),
-    };
-    Ok((own, count))
-}
-
 /// How numbers stand in an MSH file.
 pub(crate) fn codec(bytes: &[u8]) -> Result<Codec, ReadError> {
     read_header(&mut Scanner::new(bytes)).map(|(_, codec)| codec)

@@ -1,14 +1,17 @@
-//! Parameters (u, v) of points in MSH files: a view `uv` of vectors (u, v, 0) in `$NodeData`.
+//! Views at the nodes of MSH files (`$NodeData`), among them the parameters (u, v) of points: a view
+//! `uv` of vectors (u, v, 0).
 //!
 //! A view of vectors, because a view of numbers at nodes is what Gmsh and trigrade take for a size
 //! field.
 //!
 //! Source: the Gmsh reference manual, "Gmsh file formats".
 
+use crate::format::ReadOptions;
 use crate::format::error::ReadError;
-use crate::format::msh;
+use crate::format::msh::{self, Codec};
 use crate::format::scan::Scanner;
 use crate::format::text::TextOut;
+use crate::mesh::MeshData;
 use memchr::memmem;
 use std::io;
 
@@ -42,23 +45,46 @@ pub(crate) fn write(uv: &[[f64; 2]], is_binary: bool, out: &mut TextOut) -> io::
 /// # Errors
 /// The first fault of the mesh or the view, with its place.
 pub fn read_parameters(bytes: &[u8]) -> Result<Option<Vec<[f64; 2]>>, ReadError> {
-    let (mut order, points) = msh::numbers(bytes)?;
+    let mesh = msh::read(bytes, &ReadOptions::default())?;
+    let view = read(bytes, &mesh, Codec::point, |name| name == Some(NAME.as_bytes()))?;
+    Ok(view.map(|values| values.into_iter().map(|[u, v, _]| [u, v]).collect()))
+}
+
+/// The first view at nodes with `N` components and a name that is wanted: its values in the order of
+/// the points of `mesh`, which was read from the same bytes; NaN where it has none for a point. `value`
+/// reads the components at a node.
+///
+/// # Errors
+/// The first fault of the view, with its place.
+pub(crate) fn read<const N: usize>(
+    bytes: &[u8],
+    mesh: &MeshData,
+    value: impl Fn(Codec, &mut Scanner) -> Result<[f64; N], ReadError>,
+    is_wanted: impl Fn(Option<&[u8]>) -> bool,
+) -> Result<Option<Vec<[f64; N]>>, ReadError> {
+    let mut order: Vec<(i64, usize)> = mesh.point_numbers.iter().copied().zip(0..).collect();
+    if order.is_empty() {
+        order = (0..mesh.points.len()).map(|i| (i as i64, i)).collect();
+    }
     order.sort_unstable();
     let codec = msh::codec(bytes)?;
     for start in memmem::find_iter(bytes, b"$NodeData") {
         let mut scanner = Scanner::within(bytes, start);
         scanner.expect("$NodeData")?;
-        let Some(count) = read_tags(&mut scanner)? else { continue };
+        let (name, [_, components, entries]) = read_tags(&mut scanner)?;
+        if components != N as i64 || !is_wanted(name) {
+            continue;
+        }
         if codec.endian.is_some() {
             scanner.rest_of_line();
             scanner.set_binary();
         }
-        let mut uv = vec![[f64::NAN; 2]; points];
-        for _ in 0..scanner.check_count("values", count, codec.bytes(1, 0, 3))? {
+        let mut values = vec![[f64::NAN; N]; mesh.points.len()];
+        for _ in 0..scanner.check_count("values", entries, codec.bytes(1, 0, N))? {
             let number = codec.int(&mut scanner, "a node number")?;
-            let [u, v, _] = codec.point(&mut scanner)?;
+            let value = value(codec, &mut scanner)?;
             match order.binary_search_by_key(&number, |entry| entry.0) {
-                Ok(place) => uv[order[place].1] = [u, v],
+                Ok(place) => values[order[place].1] = value,
                 Err(_) => {
                     let found = number.to_string();
                     return Err(scanner.malformed("the number of a node", found.as_bytes()));
@@ -66,13 +92,14 @@ pub fn read_parameters(bytes: &[u8]) -> Result<Option<Vec<[f64; 2]>>, ReadError>
             }
         }
         scanner.expect("$EndNodeData")?;
-        return Ok(Some(uv));
+        return Ok(Some(values));
     }
     Ok(None)
 }
 
-/// Number of entries of a view of vectors called `uv`; `None` for another.
-fn read_tags(scanner: &mut Scanner) -> Result<Option<i64>, ReadError> {
+/// The tags before the values: the first of the strings, which is the name, the reals, and the
+/// integers time step, components, entries.
+fn read_tags<'a>(scanner: &mut Scanner<'a>) -> Result<(Option<&'a [u8]>, [i64; 3]), ReadError> {
     let strings = scanner.count("string tags", 2)?;
     scanner.rest_of_line();
     let names: Vec<&[u8]> = (0..strings).map(|_| scanner.rest_of_line()).collect();
@@ -86,16 +113,13 @@ fn read_tags(scanner: &mut Scanner) -> Result<Option<i64>, ReadError> {
             *integer = tag;
         }
     }
-    let [_, components, entries] = integers;
-    let is_ours = names.first() == Some(&NAME.as_bytes()) && components == 3;
-    Ok(is_ours.then_some(entries))
+    Ok((names.first().copied(), integers))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::format::{Encoding, MeshForm, MeshView, WriteOptions, write_mesh};
-    use crate::mesh::MeshData;
 
     fn mesh() -> MeshData {
         MeshData {

@@ -5,10 +5,10 @@
 //! the reader of its meshes.
 
 use crate::format::error::ReadError;
+use crate::format::msh::{self, Codec};
 use crate::format::scan::Scanner;
-use crate::format::{ReadOptions, msh, vtu};
+use crate::format::{ReadOptions, msh_view, vtu};
 use crate::mesh::MeshData;
-use memchr::memmem;
 use std::path::Path;
 
 /// A form of files with numbers at nodes.
@@ -77,60 +77,15 @@ impl NodeData {
 
 fn read_msh(bytes: &[u8]) -> Result<NodeData, ReadError> {
     let mesh = msh::read(bytes, &QUADS)?;
-    let mut order: Vec<(i64, usize)> = mesh.point_numbers.iter().copied().zip(0..).collect();
-    if order.is_empty() {
-        order = (0..mesh.points.len()).map(|i| (i as i64, i)).collect();
-    }
-    order.sort_unstable();
-    let mut values = vec![f64::NAN; mesh.points.len()];
-    let codec = msh::codec(bytes)?;
-    for start in memmem::find_iter(bytes, b"$NodeData") {
-        let mut scanner = Scanner::within(bytes, start);
-        scanner.expect("$NodeData")?;
-        let Some(count) = read_msh_tags(&mut scanner)? else { continue };
-        if codec.endian.is_some() {
-            scanner.rest_of_line();
-            scanner.set_binary();
-        }
-        let count = scanner.check_count("values", count, codec.bytes(1, 0, 1))?;
-        for _ in 0..count {
-            let number = codec.int(&mut scanner, "a node number")?;
-            let value = codec.float(&mut scanner, "the value at a node")?;
-            match order.binary_search_by_key(&number, |entry| entry.0) {
-                Ok(place) => values[order[place].1] = value,
-                Err(_) => {
-                    let found = number.to_string();
-                    return Err(scanner.malformed("the number of a node", found.as_bytes()));
-                }
-            }
-        }
-        scanner.expect("$EndNodeData")?;
-        return Ok(NodeData::of(mesh, values));
-    }
-    let scanner = Scanner::within(bytes, bytes.len());
-    Err(scanner.malformed("a section `$NodeData` of one component", b""))
-}
-
-/// The tags before the values: strings, reals, and the integers time step, components, entries.
-/// Returns the number of entries, or `None` when they have more than one component.
-fn read_msh_tags(scanner: &mut Scanner) -> Result<Option<i64>, ReadError> {
-    let strings = scanner.count("string tags", 2)?;
-    scanner.rest_of_line();
-    for _ in 0..strings {
-        scanner.rest_of_line();
-    }
-    for _ in 0..scanner.count("real tags", 2)? {
-        scanner.float("a real tag")?;
-    }
-    let mut integers = [0; 3];
-    for place in 0..scanner.count("integer tags", 2)? {
-        let tag = scanner.integer("an integer tag")?;
-        if let Some(integer) = integers.get_mut(place) {
-            *integer = tag;
+    let value =
+        |codec: Codec, scanner: &mut Scanner| Ok([codec.float(scanner, "the value at a node")?]);
+    match msh_view::read(bytes, &mesh, value, |_| true)? {
+        Some(values) => Ok(NodeData::of(mesh, values.into_iter().map(|[value]| value).collect())),
+        None => {
+            let scanner = Scanner::within(bytes, bytes.len());
+            Err(scanner.malformed("a section `$NodeData` of one component", b""))
         }
     }
-    let [_, components, entries] = integers;
-    Ok((components == 1).then_some(entries))
 }
 
 /// An element of a parsed view: name, number of nodes, and the triangles it is made of.
