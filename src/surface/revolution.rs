@@ -15,6 +15,8 @@ pub struct Revolution {
     angles_deg: [f64; 2],
     /// Whether corners of the profile are none: the surface is one piece.
     is_joined: bool,
+    /// Whether points count as on the axis that rounding alone keeps from it.
+    is_computed: bool,
 }
 
 /// Tangents of a profile that differ by less than this (radians) are those of a smooth curve.
@@ -37,7 +39,15 @@ impl Revolution {
         if !(turn > 0.0 && turn <= 360.0) {
             return Err(SurfaceError::Angle(turn));
         }
-        Ok(Self { profile, origin, axis, angles_deg, is_joined: false })
+        Ok(Self { profile, origin, axis, angles_deg, is_joined: false, is_computed: false })
+    }
+
+    /// The same surface, its profile and axis being computed from a file's rather than given: what
+    /// rounding alone keeps from the axis is on it. A surface that is given is taken at its word: there
+    /// a point is on the axis exactly, or off it.
+    #[must_use]
+    pub(crate) fn computed(self) -> Self {
+        Self { is_computed: true, ..self }
     }
 
     pub(super) fn domain(&self) -> [[f64; 2]; 2] {
@@ -94,11 +104,10 @@ impl Revolution {
         }
     }
 
-    /// Whether a point, whose arm turned by a quarter is `ahead`, lies on the axis as far as the
-    /// arithmetic of the products tells.
+    /// Whether a point, whose arm turned by a quarter is `ahead`, lies on the axis.
     fn is_on_axis(&self, p: Vector, ahead: Vector) -> bool {
         let rounding = 4.0 * f64::EPSILON * (norm(p) + norm(self.origin));
-        norm(ahead) <= rounding
+        ahead == [0.0; 3] || (self.is_computed && norm(ahead) <= rounding)
     }
 
     /// The profile turned by an angle in degrees; points on the axis stay where they are.

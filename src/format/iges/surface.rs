@@ -74,7 +74,7 @@ impl Reader<'_> {
         let profile = on_axis(profile, from, direction, self.global.resolution.unwrap_or(0.0));
         let surface = Revolution::new(profile, from, direction, degrees)
             .map_err(|error| Problem::from(error).at(place))?;
-        let surface = Surface::Revolution(surface);
+        let surface = Surface::Revolution(surface.computed());
         Ok(Base { surface, ranges: [range, angles], u_turns })
     }
 

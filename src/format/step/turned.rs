@@ -201,7 +201,8 @@ impl Reader<'_> {
         let mut tips = profile.ends();
         tips[pole] = along(origin, dot(sub(tips[pole], origin), z), z);
         let surface = Revolution::new(profile.with_ends(tips), origin, z, [0.0, 360.0]);
-        let surface = Surface::Revolution(surface.map_err(|error| base.at(error.into()))?);
+        let surface = surface.map_err(|error| base.at(error.into()))?;
+        let surface = Surface::Revolution(surface.computed());
         self.rim(*rim, surface.side(RIMS[1 - pole]), face)?;
         Ok(Some(Cut { surface, trim: None }))
     }
@@ -214,7 +215,7 @@ impl Reader<'_> {
     ) -> Result<Surface, super::Problem> {
         let profile = turned.profile(range, start)?;
         let Frame { origin, axes: [.., z] } = turned.frame;
-        Ok(Surface::Revolution(Revolution::new(profile, origin, z, [0.0, 360.0])?))
+        Ok(Surface::Revolution(Revolution::new(profile, origin, z, [0.0, 360.0])?.computed()))
     }
 
     /// A sphere turned so that its poles are far from the loops, where no seam says how it lies.
