@@ -516,15 +516,20 @@ fn worst_aspect(mesh: &Mesh) -> f64 {
     aspects(mesh).fold(0.0, f64::max)
 }
 
+/// A ring whose inner circle has edges sixty times as short as the outer one.
+fn fine_in_coarse() -> Sketch {
+    Sketch::default()
+        .add_loop(circle(60, 0.0, 0.0, 15.0), 1)
+        .add_loop(circle(120, 0.0, 0.0, 0.5), 2)
+}
+
 // spec: I21
 #[test]
 fn chains_of_changes_find_what_single_ones_do_not() {
-    let airfoil = Sketch::default()
-        .add_loop(circle(60, 0.0, 0.0, 15.0), 1)
-        .add_loop(circle(120, 0.0, 0.0, 0.5), 2);
+    let ring = fine_in_coarse();
     let run = |depth| {
         let improve = ImproveOptions { depth, ..ImproveOptions::level(1) };
-        airfoil.mesh(&Options { improve, ..Options::default() })
+        ring.mesh(&Options { improve, ..Options::default() })
     };
     let (single, chains) = (run(1), run(3));
     assert!(chains.improve.changes > single.improve.changes);
@@ -536,12 +541,10 @@ fn chains_of_changes_find_what_single_ones_do_not() {
 // spec: I22
 #[test]
 fn the_least_harmful_changes_find_as_much_as_all_of_them() {
-    let airfoil = Sketch::default()
-        .add_loop(circle(60, 0.0, 0.0, 15.0), 1)
-        .add_loop(circle(120, 0.0, 0.0, 0.5), 2);
+    let ring = fine_in_coarse();
     let run = |breadth| {
         let improve = ImproveOptions { breadth, tries_max: u64::MAX, ..ImproveOptions::level(1) };
-        airfoil.mesh(&Options { improve, ..Options::default() })
+        ring.mesh(&Options { improve, ..Options::default() })
     };
     let [all, narrow, narrowest] = [0, 6, 1].map(run);
     assert!(
