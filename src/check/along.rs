@@ -60,17 +60,26 @@ impl Along {
         scaled(self).minus(&scaled(other)).sign().is_lt()
     }
 
+    /// Compares the deviations from the same segment of this node and another, exactly.
+    ///
+    /// The two may be scaled by different powers of two.
+    pub(super) fn compare_deviation(&self, other: &Self) -> Ordering {
+        let common = self.exponent.min(other.exponent);
+        let scaled =
+            |a: &Self| a.cross_absolute().shift_left(2 * (a.exponent - common).cast_unsigned());
+        scaled(self).minus(&scaled(other)).sign()
+    }
+
+    fn cross_absolute(&self) -> Wide {
+        if self.cross.sign().is_lt() { self.cross.clone().negated() } else { self.cross.clone() }
+    }
+
     /// Whether the deviation is at most 2^-20 of the segment's length: near enough to take the node
     /// for a node of this segment. Only the name of a finding depends on it: a node that is taken
     /// so is still gated by its deviation, one that is not leaves the segment lost.
     pub(super) fn is_near(&self) -> bool {
         const NEAR_BITS: u32 = 20;
-        let cross = if self.cross.sign().is_lt() {
-            self.cross.clone().negated()
-        } else {
-            self.cross.clone()
-        };
-        cross.shift_left(NEAR_BITS).minus(&self.length_sq).sign().is_le()
+        self.cross_absolute().shift_left(NEAR_BITS).minus(&self.length_sq).sign().is_le()
     }
 
     /// Whether the deviation is at most `limit` ulps, decided exactly:

@@ -142,7 +142,9 @@ impl Open {
     }
 
     /// Nodes of a chain of unclaimed edges along the segment, or none. They advance along it and
-    /// stay near it, so the walk ends; they are no corners of the domain.
+    /// stay near it, so the walk ends; they are no corners of the domain. Where the boundary goes
+    /// on along several edges, the nearest to the segment is tried first, then the others: each
+    /// node is left for good at most once.
     fn walk(
         &self,
         at: &impl Fn(u32) -> P2,
@@ -150,33 +152,35 @@ impl Open {
         corners: &BTreeSet<u32>,
     ) -> Vec<u32> {
         let measure = |v: u32| Along::new(at(from), at(to), at(v));
-        let mut nodes: Vec<u32> = Vec::new();
-        let mut last: Option<Along> = None;
+        let mut path: Vec<(u32, Along)> = Vec::new();
+        let mut dead = BTreeSet::new();
         loop {
-            let current = nodes.last().copied().unwrap_or(from);
-            let next = self.edges.range((current, 0)..=(current, u32::MAX));
-            let mut step = None;
-            for (&(_, v), &(_, weight)) in next {
-                if weight <= 0 {
-                    continue;
-                }
-                if v == to && !nodes.is_empty() {
-                    return nodes;
-                }
-                if corners.contains(&v) {
-                    continue;
-                }
-                let along = measure(v);
-                let advances = last.as_ref().is_none_or(|l| l.is_before(&along));
-                if advances && along.is_between() && along.is_near() {
-                    step = Some((v, along));
-                    break;
-                }
+            let current = path.last().map_or(from, |&(v, _)| v);
+            if !path.is_empty() && self.next(current).any(|v| v == to) {
+                return path.into_iter().map(|(v, _)| v).collect();
             }
-            let Some((v, along)) = step else { return Vec::new() };
-            nodes.push(v);
-            last = Some(along);
+            let advances =
+                |along: &Along| path.last().is_none_or(|(_, last)| last.is_before(along));
+            let step = self
+                .next(current)
+                .filter(|v| !corners.contains(v) && !dead.contains(v))
+                .map(|v| (v, measure(v)))
+                .filter(|(_, along)| advances(along) && along.is_between() && along.is_near())
+                .min_by(|(_, a), (_, b)| a.compare_deviation(b));
+            if let Some(step) = step {
+                path.push(step);
+            } else if let Some((v, _)) = path.pop() {
+                dead.insert(v);
+            } else {
+                return Vec::new();
+            }
         }
+    }
+
+    /// Heads of the unclaimed edges that start at a node.
+    fn next(&self, node: u32) -> impl Iterator<Item = u32> {
+        let edges = self.edges.range((node, 0)..=(node, u32::MAX));
+        edges.filter(|(_, (_, weight))| *weight > 0).map(|(&(_, v), _)| v)
     }
 
     fn left_over(&self) -> impl Iterator<Item = Residual> {
@@ -190,5 +194,41 @@ impl Open {
                 domain_points: None,
             },
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes of the walk from node 0 at (0, 0) to node 1 at (1, 0) along edges of weight 1.
+    fn walk(nodes: &[P2], edges: &[(u32, u32)]) -> Vec<u32> {
+        let chain: Vec<ChainEdge> = edges
+            .iter()
+            .map(|&(from, to)| ChainEdge { from, to, weight: 1, triangle: 0 })
+            .collect();
+        let at = |v: u32| [&[[0.0, 0.0], [1.0, 0.0]], nodes].concat()[v as usize];
+        Open::new(&chain).walk(&at, [0, 1], &BTreeSet::new())
+    }
+
+    #[test]
+    fn a_walk_comes_back_from_a_chain_that_leads_nowhere() {
+        // A hole of three nearly flat nodes touches the segment in its first inner node.
+        let nodes = [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.5, 1e-9], [0.6, 2e-9]];
+        let hole = [(2, 3), (3, 6), (6, 2)];
+        assert_eq!(
+            walk(&nodes, &[&hole[..], &[(0, 2), (2, 5), (5, 4), (4, 1)]].concat()),
+            [2, 5, 4]
+        );
+        assert_eq!(walk(&nodes, &hole), [0u32; 0]);
+    }
+
+    #[test]
+    fn a_walk_takes_the_nearest_of_two_ways() {
+        let nodes = [[0.5, 1e-9], [0.5, -1e-12], [0.5, 2e-9]];
+        for way in [[2, 3, 4], [4, 3, 2], [3, 4, 2]] {
+            let edges: Vec<_> = way.iter().flat_map(|&v| [(0, v), (v, 1)]).collect();
+            assert_eq!(walk(&nodes, &edges), [3]);
+        }
     }
 }
