@@ -120,6 +120,10 @@ fn no_triangulation(points: &Points, domain: Option<&Domain>, error: &Triangulat
             let diagnostic = told.into_iter().fold(diagnostic.rule("T4"), Diagnostic::at);
             Failure::findings(vec![diagnostic.help(SPLIT)])
         }
+        TriangulateError::Segments(CdtError::Tangled { segment }) => {
+            let place = edge_told(domain, name, *segment);
+            Failure::findings(vec![diagnostic.rule("T9").at(place)])
+        }
         TriangulateError::Degenerate { segment, .. } => {
             let place = edge_told(domain, name, *segment);
             Failure::findings(vec![diagnostic.rule("D4").at(place)])
