@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 use trigrade::curve::discretize::{
-    DiscretizeError, Rule, chord_error, edge_lengths, length, nodes, points, spacing_for_chord,
-    spacing_for_triangles,
+    DiscretizeError, Rule, by_spacing, chord_error, edge_lengths, length, nodes, points,
+    spacing_for_chord, spacing_for_triangles,
 };
-use trigrade::curve::{Curve, CurveError};
+use trigrade::curve::{Curve, CurveError, CurveJet};
 use trigrade::vector::{Vector, distance, norm, scale, sub};
 
 fn wave() -> Curve {
@@ -220,6 +220,40 @@ fn graded_nodes_grow_steadily_from_one_spacing_to_the_other() {
     assert!(edges.windows(2).all(|pair| pair[1] > pair[0]), "{edges:?}");
     assert!((edges[0] / 0.1 - 1.0).abs() < 0.1, "{edges:?}");
     assert!((edges[edges.len() - 1] / 1.0 - 1.0).abs() < 0.1, "{edges:?}");
+}
+
+// spec: S2
+#[test]
+fn spacings_that_change_within_an_edge_of_the_next_keep_the_order_of_nodes() {
+    let line = Curve::polyline(vec![[0.0; 3], [1.0, 0.0, 0.0]]).unwrap();
+    let peak =
+        |at: f64, least: f64| move |jet: &CurveJet, _: f64| least + 0.3 * (jet.point[0] - at).abs();
+    for (at, least) in
+        [(0.3123, 1e-3), (0.3123, 1e-6), (1.0 / 3.0, 1e-9), (0.0, 1e-6), (0.97, 1e-4)]
+    {
+        let spacing = peak(at, least);
+        let nodes = by_spacing(&line, spacing).unwrap();
+        assert!(nodes.is_sorted_by(|a, b| a < b), "{nodes:?}");
+        for pair in nodes.windows(2) {
+            let middle = line.jet(0.5 * (pair[0] + pair[1]));
+            let ratio = (pair[1] - pair[0]) / spacing(&middle, 0.0);
+            assert!((0.6..1.5).contains(&ratio), "{ratio} at {pair:?} of {at} {least}");
+        }
+    }
+}
+
+// spec: S2
+#[test]
+fn spacings_that_jump_keep_the_order_of_nodes() {
+    let line = Curve::polyline(vec![[0.0; 3], [1.0, 0.0, 0.0]]).unwrap();
+    for (at, width) in [(0.37, 0.1), (0.37, 1e-3), (0.5, 1e-6), (0.123_456, 1e-9)] {
+        let spacing = |jet: &CurveJet, _: f64| match (jet.point[0] - at).abs() < width {
+            true => 1e-2 * width,
+            false => 0.05,
+        };
+        let nodes = by_spacing(&line, spacing).unwrap();
+        assert!(nodes.is_sorted_by(|a, b| a < b), "{at} {width}");
+    }
 }
 
 // spec: S2

@@ -259,6 +259,12 @@ fn breaks(curve: &impl Track) -> Vec<f64> {
 /// Intervals a knot interval is cut into: the rule of five points then gives arc lengths to 1e-9 of
 /// ordinary curves.
 const CUTS: usize = 16;
+/// Where the spacing changes fast these are halved until halving changes the number of edges by no more
+/// than this, and this part of it: else a sum might fall along the curve, and nodes change places.
+const PLACED: f64 = 1e-2;
+const ACCURATE: f64 = 1e-4;
+/// Most times that an interval is halved.
+const HALVINGS: u32 = 40;
 
 /// The integral of ds / h over the intervals of a piece.
 struct Table {
@@ -293,14 +299,41 @@ impl Table {
                 } else {
                     pair[0] + (pair[1] - pair[0]) * (i as f64 / CUTS as f64)
                 };
-                let (sum, arc) = integrate(curve, low, high, table.way, spacing);
-                table.at.push(high);
-                table.sum.push(table.sum[table.sum.len() - 1] + sum);
-                table.way += arc;
-                table.ways.push(table.way);
+                table.extend(curve, low, high, spacing);
             }
         }
         table
+    }
+
+    /// Adds the interval from `low`, where the table ends, to `high`: in halves where the rule does not
+    /// agree with itself, as around a point with a spacing much smaller than the interval.
+    fn extend(
+        &mut self,
+        curve: &impl Track,
+        low: f64,
+        high: f64,
+        spacing: &impl Fn(&CurveJet, f64) -> f64,
+    ) {
+        // Intervals still to be added, the next one last: their ends, and how often they were halved.
+        let mut todo = vec![(high, 0)];
+        let mut low = low;
+        while let Some((high, halved)) = todo.pop() {
+            let middle = 0.5 * (low + high);
+            let (sum, arc) = integrate(curve, low, high, self.way, spacing);
+            let (first, way) = integrate(curve, low, middle, self.way, spacing);
+            let (second, _) = integrate(curve, middle, high, self.way + way, spacing);
+            let differs = (first + second - sum).abs() > PLACED + ACCURATE * sum;
+            if differs && halved < HALVINGS && low < middle && middle < high {
+                todo.push((high, halved + 1));
+                todo.push((middle, halved + 1));
+                continue;
+            }
+            self.at.push(high);
+            self.sum.push(self.sum[self.sum.len() - 1] + sum);
+            self.way += arc;
+            self.ways.push(self.way);
+            low = high;
+        }
     }
 
     fn total(&self) -> f64 {
@@ -315,8 +348,22 @@ impl Table {
         spacing: &impl Fn(&CurveJet, f64) -> f64,
     ) -> Vec<f64> {
         let step = self.total() / count as f64;
+        let start = [self.at[0]].into_iter();
         let inner = (1..count).map(|i| self.invert(curve, step * i as f64, spacing));
-        [self.at[0]].into_iter().chain(inner).collect()
+        let parts: Vec<f64> = start.clone().chain(inner).collect();
+        if parts.is_sorted_by(|a, b| a < b) {
+            return parts;
+        }
+        // A spacing that jumps may fool the rule within an interval; the table itself rises.
+        start.chain((1..count).map(|i| self.between(step * i as f64).1)).collect()
+    }
+
+    /// The interval in which the integral comes to `sum`, and the parameter if the integral rises evenly
+    /// there.
+    fn between(&self, sum: f64) -> (usize, f64) {
+        let i = self.sum.partition_point(|&s| s <= sum).clamp(1, self.sum.len() - 1) - 1;
+        let part = (sum - self.sum[i]) / (self.sum[i + 1] - self.sum[i]);
+        (i, self.at[i] + part.clamp(0.0, 1.0) * (self.at[i + 1] - self.at[i]))
     }
 
     /// The parameter up to which the integral is `sum`: Newton's method, kept in its interval.
@@ -326,11 +373,9 @@ impl Table {
         sum: f64,
         spacing: &impl Fn(&CurveJet, f64) -> f64,
     ) -> f64 {
-        let i = self.sum.partition_point(|&s| s <= sum).clamp(1, self.sum.len() - 1) - 1;
+        let (i, mut t) = self.between(sum);
         let (start, way) = (self.at[i], self.ways[i]);
         let (mut low, mut high) = (start, self.at[i + 1]);
-        let part = (sum - self.sum[i]) / (self.sum[i + 1] - self.sum[i]);
-        let mut t = start + part.clamp(0.0, 1.0) * (high - start);
         for _ in 0..40 {
             let excess = integrate(curve, start, t, way, spacing).0 - (sum - self.sum[i]);
             if excess > 0.0 {
