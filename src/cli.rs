@@ -26,6 +26,7 @@ pub mod size_file;
 pub mod size_layers;
 pub mod study;
 pub mod surface;
+mod surface_options;
 pub mod torture;
 pub mod verdict;
 pub mod voronoi;

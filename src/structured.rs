@@ -186,6 +186,26 @@ impl Grid {
         all
     }
 
+    /// The cells between two columns and two rows of points.
+    #[must_use]
+    pub fn part(&self, [west, east]: [usize; 2], [south, north]: [usize; 2]) -> Self {
+        let row = |j: usize| self.points[self.index(west, j)..=self.index(east, j)].to_vec();
+        Self {
+            columns: east - west,
+            rows: north - south,
+            points: (south..=north).flat_map(row).collect(),
+        }
+    }
+
+    /// Puts the points of a part back, its south-west corner at a column and row.
+    pub fn put(&mut self, [column, row]: [usize; 2], part: &Self) {
+        let width = part.columns + 1;
+        for (j, points) in part.points.chunks_exact(width).enumerate() {
+            let start = self.index(column, row + j);
+            self.points[start..start + width].copy_from_slice(points);
+        }
+    }
+
     /// Two counterclockwise triangles for each cell, row by row; where both diagonals give such
     /// the one with the better worse triangle in space, the rising one when they are equal.
     ///

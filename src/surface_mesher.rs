@@ -13,6 +13,7 @@
 mod chart;
 mod defects;
 mod direct;
+mod even;
 mod excess;
 mod flip;
 pub(crate) mod growth;
@@ -24,6 +25,7 @@ mod smooth;
 mod structured;
 mod trim;
 
+use crate::curve::CurveJet;
 use crate::curve::discretize::DiscretizeError;
 use crate::front::{FrontError, FrontStats};
 use crate::mesh::MeshData;
@@ -42,7 +44,7 @@ use rayon::prelude::*;
 use sizing::{Curvature, Own};
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
-use structured::Quarters;
+use structured::{Fan, Quarters};
 
 pub use structured::PatchGridError;
 
@@ -92,6 +94,8 @@ pub struct SurfaceMeshed {
     pub improved: [u64; 2],
     /// How structured grids came out, one a smooth patch.
     pub grids: Vec<GridStats>,
+    /// Cells of structured grids: as many pairs of triangles come first; those at poles follow.
+    pub cells: usize,
 }
 
 /// Why there is no surface mesh.
@@ -156,6 +160,12 @@ pub enum SurfaceMeshError {
     /// The gradation function is none for surfaces.
     #[error("gradation: {0}")]
     Gradation(#[from] ExpressionError),
+    /// A gradation that reads spacings off the background triangulation, which models have none of.
+    #[error(
+        "gradation {0} takes the mean of three nodes of the background triangulation of a plane \
+         domain; on models spacings come from space: take growth, uniform or an expression"
+    )]
+    PlaneGradation(&'static str),
     /// The gradation function's value is no spacing.
     #[error("the gradation gives {value} at {at:?}: a spacing must be positive and finite")]
     NoSpacing {
@@ -401,16 +411,25 @@ impl Plan {
         if curvature.is_on() {
             sources = samples(&outline, &curvature);
             sources.extend(finer);
-            let field = SpaceField::new(&sources, growth, spacing);
-            outline.cut(|jet| curvature.along(jet).min(field.at(jet.point)))?;
-        } else {
-            outline.cut(|_| spacing)?;
+        }
+        let near = SpaceField::new(&sources, growth, spacing);
+        let along = |jet: &CurveJet| match curvature.is_on() {
+            true => curvature.along(jet).min(near.at(jet.point)),
+            false => spacing,
+        };
+        outline.cut(&along)?;
+        if matches!(options.method, SurfaceMethod::Grid(_)) {
+            outline.even(&along)?;
         }
         let same = model.tolerance.unwrap_or(0.0);
         let tolerance = same.max(ROUNDING * diagonal);
         let off = model.tolerance.map_or(trim::OFF * diagonal, |_| tolerance);
         outline.number(tolerance);
-        sources.extend(node_sources(&outline));
+        let is_uniform = options.common.gradation == Gradation::Uniform;
+        if !is_uniform {
+            sources.extend(node_sources(&outline));
+        }
+        let cap = if is_uniform { spacing } else { cap };
         let field = SpaceField::new(&sources, growth, cap);
         Ok(Self { outline, field, curvature, tolerances: [tolerance, off] })
     }
@@ -432,6 +451,7 @@ impl Plan {
             front: FrontStats::default(),
             improved: [0; 2],
             grids: Vec::new(),
+            cells: 0,
         }
     }
 
@@ -456,8 +476,13 @@ impl Plan {
         observer.stage(Stage::Grid);
         let mut weld = Weld::new(&self.outline);
         let mut meshed = self.nothing_yet(prediction);
+        let mut fans = Vec::new();
         for quarter in &quarters {
-            meshed.grids.push(quarter.lay(method, &mut weld)?);
+            meshed.grids.push(quarter.lay(method, &mut weld, &mut fans)?);
+        }
+        meshed.cells = weld.mesh.triangles.len() / 2;
+        for Fan { piece, marker, corners } in fans {
+            weld.push(piece, marker, corners);
         }
         observer.stage(Stage::Collect);
         (meshed.mesh, meshed.parameters) = weld.finish(model, &self.outline, rims);
@@ -527,12 +552,15 @@ fn is_kept<'a>(kept: &'a BTreeSet<u32>, rim: &'a Rim) -> impl Fn(usize) -> bool 
 }
 
 /// The gradation function of the options, if they have one that surfaces can use.
-fn own_gradation(options: &SurfaceOptions) -> Result<Option<Expression>, ExpressionError> {
+fn own_gradation(options: &SurfaceOptions) -> Result<Option<Expression>, SurfaceMeshError> {
     match &options.common.gradation {
         Gradation::Expression(expression) => {
-            expression.demand_surface().map(|()| Some(expression.clone()))
+            expression.demand_surface()?;
+            Ok(Some(expression.clone()))
         }
-        _ => Ok(None),
+        Gradation::Mean => Err(SurfaceMeshError::PlaneGradation("mean")),
+        Gradation::Third => Err(SurfaceMeshError::PlaneGradation("third")),
+        Gradation::Growth | Gradation::Uniform => Ok(None),
     }
 }
 

@@ -110,3 +110,38 @@ fn forms_without_quadrilaterals_and_meshes_without_cells_are_refused() {
     torn.regions[1] = 5;
     assert!(MeshView::from(&torn).with_quads().is_none(), "a cell lies in one region");
 }
+
+// spec: W9 W11
+#[test]
+fn quadrilaterals_and_triangles_stand_in_one_file() {
+    let mut mesh = grid();
+    pair_up(&mut mesh.triangles).expect("cells");
+    // Two cells stay four triangles: those at a pole of a grid.
+    for form in FORMS {
+        for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::Compressed] {
+            for msh_version in [MshVersion::V41, MshVersion::V22] {
+                let view = MeshView::from(&mesh).with_first_quads(4).expect("pairs");
+                let options = WriteOptions { encoding, msh_version };
+                let mut bytes = Vec::new();
+                match write_mesh(view, form, options, &mut bytes) {
+                    Ok(()) => {}
+                    Err(WriteError::Encoding { .. }) => continue,
+                    Err(error) => panic!("{form}: {error}"),
+                }
+                let whole = read(&bytes, form, false);
+                assert_eq!(whole.triangles, mesh.triangles[8..], "{form} {encoding:?}");
+                assert_eq!(whole.other_cells.iter().map(|c| c.count).sum::<u64>(), 4, "{form}");
+                let split = read(&bytes, form, true);
+                assert_eq!(split.triangles, mesh.triangles, "{form} {encoding:?} {msh_version:?}");
+                if form.carries_regions() {
+                    assert_eq!(split.regions, mesh.regions, "{form}");
+                }
+                if form.carries_edges() {
+                    assert_eq!(split.edges, mesh.edges, "{form}");
+                }
+            }
+        }
+    }
+    assert!(MeshView::from(&mesh).with_first_quads(7).is_none(), "there are but six");
+    assert!(MeshView::from(&mesh).with_first_quads(usize::MAX).is_none());
+}

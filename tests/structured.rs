@@ -9,10 +9,10 @@ use trigrade::domain::{Domain, Loop, LoopRole, Region, Segment};
 use trigrade::format::model_json;
 use trigrade::mesh::{Mesh, MeshData};
 use trigrade::mesher::{GridError, MeshError, Meshed, Method, Options, Unobserved, mesh_domain};
-use trigrade::model::{Model, ModelCurve};
+use trigrade::model::{Model, ModelCurve, Patch};
 use trigrade::point::Point2;
-use trigrade::structured::GridMethod;
-use trigrade::surface::Side as Side4;
+use trigrade::structured::{GridMethod, GridStats};
+use trigrade::surface::{Side as Side4, Surface, Tensor};
 use trigrade::surface_mesher::{
     PatchGridError, SurfaceMeshError, SurfaceMeshed, SurfaceMethod, SurfaceOptions, mesh_model,
 };
@@ -286,13 +286,87 @@ fn models_of_four_sided_patches_become_watertight_grids() {
 
 // spec: W7
 #[test]
-fn patches_with_poles_or_unequal_sides_are_named() {
-    let error = surface_grid(&example("sphere.json"), GridMethod::Transfinite).expect_err("poles");
-    assert!(matches!(error, SurfaceMeshError::Grid(PatchGridError::Pole { .. })), "{error}");
-    assert!(error.to_string().contains("pole"), "{error}");
+fn patches_with_unequal_rules_or_trims_are_named() {
     let mut model = example("two_coons.json");
-    model.curves[0].rule = Some(Rule::Count(7));
+    for (curve, count) in model.curves.iter_mut().zip([7, 9, 11, 13, 8, 6, 5]) {
+        curve.rule = Some(Rule::Count(count));
+    }
     let error = surface_grid(&model, GridMethod::Elliptic).expect_err("unequal sides");
     assert!(matches!(error, SurfaceMeshError::Grid(PatchGridError::Counts { .. })), "{error}");
     assert!(error.to_string().contains("count"), "{error}");
+    let error = surface_grid(&example("trimmed.json"), GridMethod::Transfinite).expect_err("holes");
+    assert!(matches!(error, SurfaceMeshError::Grid(PatchGridError::Trimmed { .. })), "{error}");
+    assert!(error.to_string().contains("trimmed") && error.to_string().contains("W7"), "{error}");
+}
+
+/// Both checks of a closed or open mesh of a model, with its Euler number.
+fn assert_right(name: &str, model: &Model, meshed: &SurfaceMeshed) {
+    let report = check(&meshed.mesh, None, &CheckOptions::new().dimension(Dimension::Space));
+    let crossings = model.parts_may_cross;
+    assert!(report.passed() || crossings, "{name}: {:?}", report.findings.first());
+    let found = against_model(&meshed.mesh, model, &SurfaceLimits::default());
+    assert_eq!(found.findings, [], "{name}");
+    assert_eq!(found.euler, found.euler_of_model, "{name}");
+}
+
+// spec: W11
+#[test]
+fn at_poles_the_cells_are_triangles_around_one_vertex() {
+    for name in ["sphere.json", "vase.json", "pot.json", "teapot.json"] {
+        let model = example(name);
+        for method in [GridMethod::Transfinite, GridMethod::Elliptic] {
+            let meshed = surface_grid(&model, method).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_right(name, &model, &meshed);
+            let fans = &meshed.mesh.triangles[2 * meshed.cells..];
+            assert!(!fans.is_empty(), "{name}");
+            let mut at = std::collections::BTreeMap::new();
+            for &v in fans.iter().flatten() {
+                *at.entry(v).or_insert(0) += 1;
+            }
+            // Every fan triangle has one pole, and two corners that only its neighbour shares.
+            let poles = at.values().filter(|&&n| n > 2).map(|&n| n as usize).sum::<usize>();
+            assert_eq!(poles, fans.len(), "{name}");
+            assert_eq!(meshed.prediction.triangles, meshed.mesh.triangles.len() as f64, "{name}");
+        }
+    }
+}
+
+// spec: W11
+#[test]
+fn a_patch_between_two_poles_takes_its_columns_from_the_spacing() {
+    // One Bezier patch, a lens: its west and east sides are points.
+    let row = |x: f64, half: f64| vec![[x, -half, 0.0], [x, 0.0, half], [x, half, 0.0]];
+    let rows = [row(0.0, 0.0), row(1.0, 1.0), row(2.0, 1.0), row(3.0, 0.0)];
+    let surface = Surface::Tensor(Tensor::bezier(&rows).expect("a patch"));
+    let model = Model {
+        patches: vec![Patch::plain(0, surface)],
+        spacing: Some(0.1),
+        ..Model::default()
+    };
+    for method in [GridMethod::Transfinite, GridMethod::Elliptic] {
+        let meshed = surface_grid(&model, method).expect("a grid");
+        assert_right("lens", &model, &meshed);
+        let GridStats { columns, rows, .. } = meshed.grids[0];
+        assert_eq!(meshed.mesh.triangles.len(), 2 * columns * rows - 2 * rows);
+        assert!((12..=20).contains(&rows), "{rows} rows of about 0.1 across 1.5");
+    }
+}
+
+// spec: W12
+#[test]
+fn curves_that_face_each_other_get_the_number_of_edges_of_the_finest() {
+    let model = example("torus.json");
+    let meshed = surface_grid(&model, GridMethod::Transfinite).expect("a grid");
+    assert_right("torus", &model, &meshed);
+    let rows: Vec<usize> = meshed.grids.iter().map(|stats| stats.rows).collect();
+    assert_eq!(rows, vec![rows[0]; 4], "the outer circle decides for all rings");
+    assert!(rows[0] as f64 > 0.9 * std::f64::consts::TAU * 2.5 / 0.12, "{rows:?}");
+    // A rule of the model's own decides for the curves that face it.
+    let mut model = example("two_coons.json");
+    model.curves[0].rule = Some(Rule::Count(7));
+    model.curves[1..].iter_mut().for_each(|curve| curve.rule = None);
+    let meshed = surface_grid(&model, GridMethod::Transfinite).expect("a grid");
+    assert_right("two_coons", &model, &meshed);
+    let stats = meshed.grids;
+    assert!(stats.iter().any(|s| s.columns == 7 || s.rows == 7), "{stats:?}");
 }

@@ -1,6 +1,6 @@
 //! `trigrade mesh`: domain in, checked mesh out.
 
-use super::arguments::{Farfield, MeshArguments, Method};
+use super::arguments::{Farfield, MeshArguments};
 use super::check::write_json;
 use super::console::Console;
 use super::domain_file::{invalid, load_domain};
@@ -15,6 +15,7 @@ use super::refinement::Refinement;
 use super::size_file::load_size_field;
 use super::size_layers::{NodalSpacing, nodal_spacing, spacing_layers};
 use super::surface;
+use super::surface_options::demand_on_plane;
 use super::verdict::{self, Figures};
 use super::watch::{Watch, prediction, seconds};
 use super::words::count;
@@ -47,10 +48,7 @@ pub fn run(
         let message = format!("{flag} has a meaning with `--method delaunay` only");
         return Err(Failure::cannot_run(Diagnostic::new(message)));
     }
-    if arguments.options.method == Method::DirectSurface {
-        let message = "`--method direct-surface` has a meaning for surface models only";
-        return Err(Failure::cannot_run(Diagnostic::new(message)));
-    }
+    demand_on_plane(&arguments.options, &arguments.on_surface)?;
     let quads = quads::wanted(&arguments.options)?;
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
@@ -150,7 +148,8 @@ fn write_all(
     let background = background.map(spacing);
     let drawing = Drawing { layers, background, ..Drawing::of(&data, "") };
     for (i, file) in files.iter().enumerate() {
-        let view = quads::view(MeshView::from(&meshed.mesh), quads);
+        let cells = quads.then_some(meshed.mesh.triangles.len() / 2);
+        let view = quads::view(MeshView::from(&meshed.mesh), cells);
         mesh_file::write(outputs, i, file, view, &drawing)?;
     }
     Ok(())

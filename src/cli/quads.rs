@@ -45,8 +45,8 @@ pub fn pair(triangles: &mut [[u32; 3]], plane: Option<&[Point2]>) -> Result<(), 
     }
 }
 
-/// The mesh as it is written.
+/// The mesh as it is written, its first triangles as so many quadrilaterals.
 #[must_use]
-pub fn view(mesh: MeshView<'_>, quads: bool) -> MeshView<'_> {
-    if quads { mesh.with_quads().unwrap_or(mesh) } else { mesh }
+pub fn view(mesh: MeshView<'_>, quads: Option<usize>) -> MeshView<'_> {
+    quads.and_then(|count| mesh.with_first_quads(count)).unwrap_or(mesh)
 }

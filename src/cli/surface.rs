@@ -13,6 +13,7 @@ use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::quads;
 use super::verdict::{self, Figures};
+use super::surface_options::{demand_slope_of_use, demand_on_model};
 use super::watch::{Watch, prediction, seconds};
 use super::words::{boundary, count};
 use crate::check::CheckOptions;
@@ -101,6 +102,7 @@ pub fn run(
 ) -> Result<Outcome, Failure> {
     let mut watch = Watch::new(console);
     let quads = quads::wanted(&arguments.options)?;
+    demand_on_model(arguments)?;
     let files = output_files(&arguments.outputs, arguments.form.as_deref())?;
     watch.begin("read");
     let (input, model) = load_model(
@@ -112,8 +114,9 @@ pub fn run(
         common: arguments.options.options(),
         chord_error: arguments.on_surface.chord_error,
         angle_per_edge_deg: arguments.on_surface.angle_per_edge,
-        method: method(arguments)?,
+        method: method(arguments.options.method),
     };
+    demand_slope_of_use(arguments, &model)?;
     let mut targets = paths(&files);
     targets.extend(arguments.certificate.clone());
     let mut outputs = Outputs::prepare(&targets, cleanup)?;
@@ -127,7 +130,7 @@ pub fn run(
     }
     let mut meshed = mesh_model(&model, &options, &mut watch).map_err(|e| no_mesh(&e))?;
     if quads {
-        quads::pair(&mut meshed.mesh.triangles, None)?;
+        quads::pair(&mut meshed.mesh.triangles[..2 * meshed.cells], None)?;
     }
     watch.begin("write");
     write_all(&mut outputs, &files, (&meshed, quads))?;
@@ -158,17 +161,14 @@ pub fn run(
 }
 
 /// How the patches are meshed.
-fn method(arguments: &MeshArguments) -> Result<SurfaceMethod, Failure> {
-    if arguments.options.corners.is_some() {
-        let message = "--corners has a meaning for plane domains only: patches have their own";
-        return Err(Failure::cannot_run(Diagnostic::new(message)));
-    }
-    Ok(match arguments.options.method {
+fn method(method: Method) -> SurfaceMethod {
+    match method {
         Method::Transfinite => SurfaceMethod::Grid(GridMethod::Transfinite),
         Method::Elliptic => SurfaceMethod::Grid(GridMethod::Elliptic),
         Method::DirectSurface => SurfaceMethod::Direct,
+        // Others are refused before.
         _ => SurfaceMethod::Front,
-    })
+    }
 }
 
 fn no_mesh(error: &SurfaceMeshError) -> Failure {
@@ -185,6 +185,7 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
         | SurfaceMeshError::TooMany { .. }
         | SurfaceMeshError::Front(_)
         | SurfaceMeshError::Gradation(_)
+        | SurfaceMeshError::PlaneGradation(_)
         | SurfaceMeshError::NoSpacing { .. }
         | SurfaceMeshError::Options(_) => Failure::cannot_run(diagnostic),
     }
@@ -197,7 +198,7 @@ fn write_all(
 ) -> Result<(), Failure> {
     let drawing = Drawing::of(&meshed.mesh, "");
     let view = MeshView::from(&meshed.mesh).with_parameters(&meshed.parameters);
-    let view = quads::view(view, quads);
+    let view = quads::view(view, quads.then_some(meshed.cells));
     for (i, file) in files.iter().enumerate() {
         mesh_file::write(outputs, i, file, view, &drawing)?;
     }

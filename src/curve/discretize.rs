@@ -145,6 +145,24 @@ pub fn by_spacing(
     Ok(all)
 }
 
+/// The same with this many edges in all, at equal parts of the integral; for curves without corners.
+///
+/// # Errors
+/// [`DiscretizeError::TooMany`], [`DiscretizeError::NoLength`].
+pub fn by_count_and_spacing(
+    curve: &impl Track,
+    count: usize,
+    spacing: impl Fn(&CurveJet, f64) -> f64,
+) -> Result<Vec<f64>, DiscretizeError> {
+    check(Rule::Count(count))?;
+    let [start, end] = curve.domain();
+    let table = Table::new(curve, start, end, 0.0, &spacing);
+    edges(curve, &[start, end], table.total())?;
+    let mut all = table.parts(curve, count, &spacing);
+    all.push(end);
+    Ok(all)
+}
+
 /// Number of edges of a piece that asks for this many.
 fn edges(curve: &impl Track, piece: &[f64], wanted: f64) -> Result<usize, DiscretizeError> {
     if wanted > EDGES_MAX as f64 {

@@ -154,10 +154,14 @@ fn write_edges(mesh: MeshView, groups: &Groups, binary: bool, out: &mut TextOut)
 }
 
 fn write_faces(mesh: MeshView, groups: &Groups, binary: bool, out: &mut TextOut) -> io::Result<()> {
-    let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
-    write_block_header(code, mesh.face_count(), binary, out)?;
+    let quads = mesh.quad_count();
     let first = mesh.edges().len() as i64 + 1;
     for (index, face) in mesh.faces().enumerate() {
+        let code = if index < quads { QUADRILATERAL } else { TRIANGLE };
+        if index == 0 || index == quads {
+            let length = if index < quads { quads } else { mesh.face_count() - quads };
+            write_block_header(code, length, binary, out)?;
+        }
         let region = mesh.face_region(index, DEFAULT_REGION);
         let tags = [i64::from(region), groups.surface(region)];
         write_element((first + index as i64, code), tags, face.corners(), binary, out)?;

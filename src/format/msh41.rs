@@ -291,9 +291,9 @@ impl Out<'_, '_> {
                 number += 1;
             }
         }
-        let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
         let mut faces = mesh.faces();
-        for (region, length) in runs {
+        for ((region, corners), length) in runs {
+            let code = if corners == 4 { QUADRILATERAL } else { TRIANGLE };
             self.block([2, groups.surface(region), code], length as i64)?;
             for face in faces.by_ref().take(length) {
                 self.element(number, face.corners())?;
@@ -314,14 +314,14 @@ impl Out<'_, '_> {
     }
 }
 
-/// Runs of faces of the same region, with their lengths.
-fn face_runs(mesh: MeshView) -> Vec<(i32, usize)> {
-    let mut runs: Vec<(i32, usize)> = Vec::new();
-    for index in 0..mesh.face_count() {
-        let region = mesh.face_region(index, DEFAULT_REGION);
+/// Runs of faces of the same region and number of corners, with their lengths.
+fn face_runs(mesh: MeshView) -> Vec<((i32, usize), usize)> {
+    let mut runs: Vec<((i32, usize), usize)> = Vec::new();
+    for (index, face) in mesh.faces().enumerate() {
+        let kind = (mesh.face_region(index, DEFAULT_REGION), face.corners().len());
         match runs.last_mut() {
-            Some((last, length)) if *last == region => *length += 1,
-            _ => runs.push((region, 1)),
+            Some((last, length)) if *last == kind => *length += 1,
+            _ => runs.push((kind, 1)),
         }
     }
     runs

@@ -112,7 +112,7 @@ pub(crate) fn write(mesh: MeshView, out: &mut TextOut) -> io::Result<()> {
         out.float(z, b'\n')?;
     }
     for face in mesh.faces() {
-        out.bytes(if mesh.has_quads() { b"4 " } else { b"3 " })?;
+        out.bytes(if face.corners().len() == 4 { b"4 " } else { b"3 " })?;
         out.corners(face.corners(), 0, b'\n')?;
     }
     Ok(())

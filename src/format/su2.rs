@@ -184,7 +184,7 @@ pub(crate) fn write(mesh: MeshView, out: &mut TextOut) -> io::Result<()> {
     let dimension = if mesh.is_plane() { 2 } else { 3 };
     out.text(&format!("NDIME= {dimension}\nNELEM= {}\n", mesh.face_count()))?;
     for (index, face) in (0..).zip(mesh.faces()) {
-        out.bytes(if mesh.has_quads() { b"9 " } else { b"5 " })?;
+        out.bytes(if face.corners().len() == 4 { b"9 " } else { b"5 " })?;
         out.corners(face.corners(), 0, b' ')?;
         out.integer(index, b'\n')?;
     }

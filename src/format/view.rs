@@ -23,8 +23,8 @@ pub struct MeshView<'a> {
     edges: &'a [MarkedEdge],
     regions: &'a [i32],
     parameters: &'a [[f64; 2]],
-    /// Whether two triangles each are a quadrilateral.
-    is_paired: bool,
+    /// How many quadrilaterals the first triangles are, two each.
+    quads: usize,
 }
 
 /// A face to be written.
@@ -49,7 +49,7 @@ impl<'a> From<&'a Mesh> for MeshView<'a> {
             edges: &mesh.edges,
             regions: &mesh.regions,
             parameters: &[],
-            is_paired: false,
+            quads: 0,
         }
     }
 }
@@ -62,7 +62,7 @@ impl<'a> From<&'a MeshData> for MeshView<'a> {
             edges: &mesh.edges,
             regions: &mesh.regions,
             parameters: &[],
-            is_paired: false,
+            quads: 0,
         }
     }
 }
@@ -79,46 +79,61 @@ impl<'a> MeshView<'a> {
     /// The same mesh with two triangles (a, b, c) and (a, c, d) each as the quadrilateral (a, b, c, d);
     /// `None` when they are not so paired (see [`crate::structured::pair_up`]).
     #[must_use]
-    pub fn with_quads(mut self) -> Option<Self> {
+    pub fn with_quads(self) -> Option<Self> {
+        let (count, is_even) = (self.triangles.len() / 2, self.triangles.len().is_multiple_of(2));
+        if is_even { self.with_first_quads(count) } else { None }
+    }
+
+    /// The same mesh with the first `count` pairs of triangles as quadrilaterals, all others as they
+    /// are; `None` when those are not so paired.
+    #[must_use]
+    pub fn with_first_quads(mut self, count: usize) -> Option<Self> {
         let is_pair =
             |pair: &[[u32; 3]]| matches!(pair, [[a, _, c], [d, e, _]] if (a, c) == (d, e));
-        let regions = self.regions.chunks(2).all(|pair| pair.len() == 2 && pair[0] == pair[1]);
-        let all = self.triangles.chunks(2).all(is_pair) && regions;
-        self.is_paired = all;
+        let paired = self.triangles.get(..count.checked_mul(2)?)?;
+        let regions = self.regions.get(..2 * count).unwrap_or_default();
+        let is_one = regions.chunks(2).all(|pair| pair.len() == 2 && pair[0] == pair[1]);
+        let all = paired.chunks(2).all(is_pair) && is_one;
+        self.quads = count;
         all.then_some(self)
     }
 
-    /// Whether its faces are quadrilaterals.
+    /// Whether some of its faces are quadrilaterals.
     #[must_use]
     pub const fn has_quads(&self) -> bool {
-        self.is_paired
+        self.quads > 0
     }
 
-    /// Number of triangles, or of quadrilaterals.
+    /// Number of quadrilaterals, which come before the triangles.
+    pub(crate) const fn quad_count(&self) -> usize {
+        self.quads
+    }
+
+    /// Number of quadrilaterals and triangles.
     pub(crate) const fn face_count(&self) -> usize {
-        if self.is_paired { self.triangles.len() / 2 } else { self.triangles.len() }
+        self.triangles.len() - self.quads
     }
 
-    /// Corners of each face.
-    pub(crate) const fn face_corners(&self) -> usize {
-        if self.is_paired { 4 } else { 3 }
+    /// Number of corners of all faces together.
+    pub(crate) const fn corner_count(&self) -> usize {
+        4 * self.quads + 3 * (self.triangles.len() - 2 * self.quads)
     }
 
-    /// The faces in order.
+    /// The faces in order: quadrilaterals, then triangles.
     pub(crate) fn faces(self) -> impl Iterator<Item = Face> + 'a {
-        let step = if self.is_paired { 2 } else { 1 };
-        let count = self.face_corners();
-        self.triangles.chunks(step).map(move |chunk| {
-            let [a, b, c] = chunk[0];
-            let d = chunk.get(1).map_or(0, |other| other[2]);
-            Face { corners: [a, b, c, d], count }
-        })
+        let (paired, single) = self.triangles.split_at(2 * self.quads);
+        let quad = |pair: &[[u32; 3]]| {
+            let ([a, b, c], [.., d]) = (pair[0], pair[1]);
+            Face { corners: [a, b, c, d], count: 4 }
+        };
+        let triangle = |&[a, b, c]: &[u32; 3]| Face { corners: [a, b, c, 0], count: 3 };
+        paired.chunks_exact(2).map(quad).chain(single.iter().map(triangle))
     }
 
     /// Region of face `index`, or `default` when the mesh has none.
     #[inline]
     pub(crate) fn face_region(&self, index: usize, default: i32) -> i32 {
-        self.region(if self.is_paired { 2 * index } else { index }, default)
+        self.region(index + index.min(self.quads), default)
     }
 
     /// The parameters (u, v) of the points; empty where there are none.

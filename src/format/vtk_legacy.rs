@@ -412,7 +412,7 @@ impl VtkReader<'_> {
 /// as lines, with the cell arrays `region` and `marker`.
 pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::Result<()> {
     let mut out = Out { out, is_binary };
-    let (faces, corners, edges) = (mesh.face_count(), mesh.face_corners(), mesh.edges());
+    let (faces, quads, edges) = (mesh.face_count(), mesh.quad_count(), mesh.edges());
     let cells = faces + edges.len();
     let encoding = if is_binary { "BINARY" } else { "ASCII" };
     out.line(&format!("# vtk DataFile Version 2.0\ntriangulation\n{encoding}"))?;
@@ -421,8 +421,9 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     for point in mesh.points() {
         out.point(point)?;
     }
-    out.end(&format!("CELLS {cells} {}", (corners + 1) * faces + 3 * edges.len()))?;
+    out.end(&format!("CELLS {cells} {}", mesh.corner_count() + faces + 3 * edges.len()))?;
     for face in mesh.faces() {
+        let corners = face.corners().len();
         let mut row = [corners as i32; 5];
         row[1..].iter_mut().zip(face.corners()).for_each(|(slot, &v)| *slot = v as i32);
         out.integers(&row[..=corners])?;
@@ -430,10 +431,14 @@ pub(crate) fn write(mesh: MeshView, is_binary: bool, out: &mut TextOut) -> io::R
     for edge in edges {
         out.integers(&[2, edge.vertices[0] as i32, edge.vertices[1] as i32])?;
     }
-    let face_type = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
+    let kind = |index: usize| match index {
+        index if index < quads => QUADRILATERAL,
+        index if index < faces => TRIANGLE,
+        _ => LINE,
+    };
     out.end(&format!("CELL_TYPES {cells}"))?;
     for index in 0..cells {
-        out.integers(&[if index < faces { face_type } else { LINE } as i32])?;
+        out.integers(&[kind(index) as i32])?;
     }
     out.end(&format!("CELL_DATA {cells}\nFIELD FieldData 2\nregion 1 {cells} int"))?;
     for index in 0..cells {

@@ -257,7 +257,7 @@ impl Outline {
     /// Gives nodes to the curves that have none yet, by the spacing at a point of them.
     pub(super) fn cut(
         &mut self,
-        spacing: impl Fn(&crate::curve::CurveJet) -> f64,
+        spacing: &impl Fn(&crate::curve::CurveJet) -> f64,
     ) -> Result<(), SurfaceMeshError> {
         for shared in &mut self.curves {
             shared.has_rule = !shared.nodes.is_empty();
@@ -438,7 +438,7 @@ impl Shared {
     }
 }
 
-fn root(same: &[u32], mut v: u32) -> u32 {
+pub(super) fn root(same: &[u32], mut v: u32) -> u32 {
     while same[v as usize] != v {
         v = same[v as usize];
     }

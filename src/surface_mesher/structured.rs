@@ -4,11 +4,12 @@
 use super::lift::Weld;
 use super::outline::{Node, Piece, Rim};
 use super::{Plan, SurfaceMeshError};
+use crate::curve::discretize::EDGES_MAX;
 use crate::metric::FirstForm;
 use crate::model::Model;
 use crate::point::Point2;
 use crate::structured::{
-    Chart, Folded, Grid, GridMethod, GridStats, Sides, fractions, relax, transfinite,
+    Chart, Folded, Grid, GridMethod, GridStats, Relaxed, Sides, fractions, relax, transfinite,
 };
 use crate::surface::{Side, Surface};
 use crate::vector::{Vector, distance, dot};
@@ -16,18 +17,11 @@ use crate::vector::{Vector, distance, dot};
 /// Why a patch has no structured grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PatchGridError {
-    /// A side is a point.
-    #[error(
-        "patch {name} has no structured grid: its {side} side is a pole; take another --method"
-    )]
-    Pole {
-        /// The patch.
-        name: String,
-        /// The side.
-        side: &'static str,
-    },
     /// The outline is not that of the four sides.
-    #[error("patch {name} has no structured grid: it does not end in the four sides of its (u, v)")]
+    #[error(
+        "patch {name} has no structured grid: it is trimmed, and a grid needs a patch that ends in \
+         the four sides of its (u, v); take another --method (rule W7)"
+    )]
     Trimmed {
         /// The patch.
         name: String,
@@ -93,7 +87,17 @@ pub(super) struct Quarters<'a> {
     surface: &'a Surface,
     name: &'a str,
     marker: i32,
+    /// A pole has the nodes of the side that it faces, all of one vertex.
     sides: Sides<Node>,
+    /// By [`Side::ALL`]: which sides are poles.
+    poles: [bool; 4],
+}
+
+/// A triangle at a pole: the cell there has no fourth corner.
+pub(super) struct Fan {
+    pub(super) piece: u32,
+    pub(super) marker: i32,
+    pub(super) corners: [u32; 3],
 }
 
 impl<'a> Quarters<'a> {
@@ -104,53 +108,52 @@ impl<'a> Quarters<'a> {
         rims: &[Rim],
     ) -> Result<Vec<Self>, PatchGridError> {
         let pieces = plan.outline.pieces.iter().enumerate().zip(rims);
-        pieces.map(|((i, piece), rim)| Self::new(i, piece, model, &rim.nodes)).collect()
+        pieces.map(|((i, piece), rim)| Self::new((i, piece), model, (plan, &rim.nodes))).collect()
     }
 
     fn new(
-        index: usize,
-        piece: &'a Piece,
+        (index, piece): (usize, &'a Piece),
         model: &'a Model,
-        nodes: &[Node],
+        (plan, nodes): (&Plan, &[Node]),
     ) -> Result<Self, PatchGridError> {
         let patch = &model.patches[piece.patch];
         let name = || patch.name.clone();
         if !piece.loops.is_empty() {
             return Err(PatchGridError::Trimmed { name: name() });
         }
-        if let Some(side) = Side::ALL.iter().find(|&&side| piece.sides[side as usize].is_empty()) {
-            return Err(PatchGridError::Pole { name: name(), side: side.name() });
-        }
         let corners = corners(&piece.surface, nodes);
         let corners = corners.ok_or_else(|| PatchGridError::Trimmed { name: name() })?;
-        let sides = Sides::of_loop(nodes, corners);
+        let mut sides = Sides::of_loop(nodes, corners);
+        let poles = Side::ALL.map(|side| piece.sides[side as usize].is_empty());
+        let points = &plan.outline.points;
+        spread_poles(&mut sides, poles, |west, east| between(&piece.surface, points, (west, east)));
         let counts = sides.counts();
         if counts[0] != counts[2] || counts[1] != counts[3] {
             return Err(PatchGridError::Counts { name: name(), counts });
         }
         let (surface, marker) = (&piece.surface, patch.marker);
-        Ok(Self { piece: index, surface, name: &patch.name, marker, sides })
+        Ok(Self { piece: index, surface, name: &patch.name, marker, sides, poles })
     }
 
     /// Triangles of the grid.
     pub(super) fn triangles(&self) -> usize {
         let [columns, rows, ..] = self.sides.counts();
-        2 * columns * rows
+        let at_poles = self.poles.iter().zip([columns, rows, columns, rows]);
+        let fewer: usize = at_poles.filter(|(pole, _)| **pole).map(|(_, edges)| edges).sum();
+        (2 * columns * rows).saturating_sub(fewer)
     }
 
-    /// Lays the grid and welds it to the rest.
+    /// Lays the grid and welds it to the rest; the triangles at poles are handed back.
     pub(super) fn lay(
         &self,
         method: GridMethod,
         weld: &mut Weld,
+        fans: &mut Vec<Fan>,
     ) -> Result<GridStats, SurfaceMeshError> {
         let at = |node: Node| weld.mesh.points[node.vertex as usize];
-        let of = |side: &[Node]| fractions(side, |a, b| distance(at(a), at(b)));
-        let Sides { south, east, north, west } = &self.sides;
-        let along = Sides { south: of(south), east: of(east), north: of(north), west: of(west) };
+        let along = self.fractions(at);
         let mut grid = transfinite(&self.sides.map(|n| Point2::new(n.u, n.v)), &along);
-        let relaxed =
-            (method == GridMethod::Elliptic).then(|| relax(&mut grid, &OnSurface(self.surface)));
+        let relaxed = (method == GridMethod::Elliptic).then(|| self.relax(&mut grid));
         let new: Vec<Vector> = grid.points.iter().map(|p| self.surface.at(p.x, p.y)).collect();
         let space = grid.with_sides(&self.sides.map(at), &new);
         let triangles =
@@ -159,16 +162,74 @@ impl<'a> Quarters<'a> {
         for (&v, place) in numbers.iter().zip(&grid.points) {
             weld.place(v, [place.x, place.y]);
         }
-        for corners in triangles {
-            let corners = corners.map(|v| numbers[v as usize]);
-            let [a, b, c] = corners;
-            if a == b || b == c || c == a {
-                let at = weld.mesh.points[if a == b { a } else { c } as usize];
-                return Err(SurfaceMeshError::Coarse { name: self.name.to_owned(), at });
+        for pair in triangles.chunks_exact(2) {
+            let cell = [pair[0], pair[1]].map(|corners| corners.map(|v| numbers[v as usize]));
+            let (piece, marker) = (self.piece as u32, self.marker);
+            match (is_triangle(cell[0]), is_triangle(cell[1])) {
+                (true, true) => cell.into_iter().for_each(|t| weld.push(piece, marker, t)),
+                (false, false) => return Err(self.coarse(cell[0], weld)),
+                (first, _) => {
+                    let (kept, left_out) = if first { (0, 1) } else { (1, 0) };
+                    if !self.is_at_pole(&grid, pair[left_out]) {
+                        return Err(self.coarse(cell[left_out], weld));
+                    }
+                    fans.push(Fan { piece, marker, corners: cell[kept] });
+                }
             }
-            weld.push(self.piece as u32, self.marker, corners);
         }
         Ok(GridStats { columns: grid.columns, rows: grid.rows, relaxed })
+    }
+
+    /// Fractions of arc length; a pole takes those of the side that it faces.
+    fn fractions(&self, at: impl Fn(Node) -> Vector) -> Sides<f64> {
+        let of = |side: &[Node]| fractions(side, |a, b| distance(at(a), at(b)));
+        let Sides { south, east, north, west } = &self.sides;
+        let mut along =
+            Sides { south: of(south), east: of(east), north: of(north), west: of(west) };
+        let [s, e, n, w] = self.poles;
+        match (s, n) {
+            (true, false) => along.south.clone_from(&along.north),
+            (false, true) => along.north.clone_from(&along.south),
+            _ => {}
+        }
+        match (w, e) {
+            (true, false) => along.west.clone_from(&along.east),
+            (false, true) => along.east.clone_from(&along.west),
+            _ => {}
+        }
+        along
+    }
+
+    /// Smooths the grid but for the cells at poles: no harmonic function tells a point of a boundary
+    /// from the rest, and rows would crowd there without end.
+    fn relax(&self, grid: &mut Grid) -> Relaxed {
+        let [south, east, north, west] = self.poles.map(usize::from);
+        let (columns, rows) = ([west, grid.columns - east], [south, grid.rows - north]);
+        if columns[0] >= columns[1] || rows[0] >= rows[1] {
+            return Relaxed::default();
+        }
+        let mut inner = grid.part(columns, rows);
+        let relaxed = relax(&mut inner, &OnSurface(self.surface));
+        grid.put([columns[0], rows[0]], &inner);
+        relaxed
+    }
+
+    /// Whether two of three corners lie on one side that is a pole.
+    fn is_at_pole(&self, grid: &Grid, corners: [u32; 3]) -> bool {
+        let (width, places) = (grid.columns + 1, corners.map(|v| v as usize));
+        let on: [&dyn Fn(usize) -> bool; 4] = [
+            &|v| v / width == 0,
+            &|v| v % width == grid.columns,
+            &|v| v / width == grid.rows,
+            &|v| v % width == 0,
+        ];
+        let both = |on: &dyn Fn(usize) -> bool| places.iter().filter(|v| on(**v)).count() >= 2;
+        self.poles.iter().zip(on).any(|(&pole, on)| pole && both(on))
+    }
+
+    fn coarse(&self, [a, b, c]: [u32; 3], weld: &Weld) -> SurfaceMeshError {
+        let at = weld.mesh.points[if a == b { a } else { c } as usize];
+        SurfaceMeshError::Coarse { name: self.name.to_owned(), at }
     }
 
     /// The model's vertex of each grid point; inner ones are new.
@@ -187,6 +248,79 @@ impl<'a> Quarters<'a> {
         let at = space[grid.cell(column, row)[0]];
         PatchGridError::Folded { name: self.name.to_owned(), count, column, row, at }
     }
+}
+
+/// Whether three vertices are different.
+fn is_triangle([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// Gives poles, of which the outline has the two corners alone, as many nodes as the sides that they
+/// face; where both are poles, as `edges` says for the two sides between them.
+fn spread_poles(
+    sides: &mut Sides<Node>,
+    [south, east, north, west]: [bool; 4],
+    edges: impl Fn(&[Node], &[Node]) -> usize,
+) {
+    if south && north {
+        let count = edges(&sides.west, &sides.east);
+        (sides.south, sides.north) = (evenly(&sides.south, count), evenly(&sides.north, count));
+    } else if south {
+        sides.south = facing(&sides.south, &sides.north);
+    } else if north {
+        sides.north = facing(&sides.north, &sides.south);
+    }
+    if west && east {
+        let count = edges(&sides.south, &sides.north);
+        (sides.west, sides.east) = (evenly(&sides.west, count), evenly(&sides.east, count));
+    } else if west {
+        sides.west = facing(&sides.west, &sides.east);
+    } else if east {
+        sides.east = facing(&sides.east, &sides.west);
+    }
+}
+
+/// A pole cut at equal steps of its parameter.
+fn evenly(pole: &[Node], count: usize) -> Vec<Node> {
+    let (first, last) = (pole[0], pole[pole.len() - 1]);
+    let node = |k: usize| {
+        let mix = |a: f64, b: f64| a + k as f64 / count as f64 * (b - a);
+        Node { u: mix(first.u, last.u), v: mix(first.v, last.v), vertex: first.vertex }
+    };
+    let inner = (1..count).map(node);
+    [first].into_iter().chain(inner).chain([last]).collect()
+}
+
+/// A pole cut where the side is that it faces: along that side one parameter stays as it is.
+fn facing(pole: &[Node], side: &[Node]) -> Vec<Node> {
+    let (first, last) = (pole[0], pole[pole.len() - 1]);
+    let node = |n: &Node| match first.u == last.u {
+        true => Node { u: first.u, v: n.v, vertex: first.vertex },
+        false => Node { u: n.u, v: first.v, vertex: first.vertex },
+    };
+    let inner = side[1..side.len() - 1].iter().map(node);
+    [first].into_iter().chain(inner).chain([last]).collect()
+}
+
+/// Points along a line between two sides.
+const ACROSS: u32 = 64;
+
+/// Edges of the longest of the lines that join the nodes of two sides, each measured in edges of the
+/// sides there; at least three.
+fn between(surface: &Surface, points: &[Vector], (from, to): (&[Node], &[Node])) -> usize {
+    let at = |n: &Node| points[n.vertex as usize];
+    let mut most: f64 = 3.0;
+    for i in 1..from.len().min(to.len()).saturating_sub(1) {
+        let (a, b) = (from[i], to[i]);
+        let place = |k: u32| {
+            let t = f64::from(k) / f64::from(ACROSS);
+            surface.at(a.u + t * (b.u - a.u), a.v + t * (b.v - a.v))
+        };
+        let length: f64 = (0..ACROSS).map(|k| distance(place(k), place(k + 1))).sum();
+        let edge = |side: &[Node]| distance(at(&side[i - 1]), at(&side[i + 1])) / 2.0;
+        most = most.max(length / (0.5 * (edge(from) + edge(to))));
+    }
+    if most < EDGES_MAX as f64 { libm::round(most) as usize } else { EDGES_MAX }
 }
 
 /// Positions of the corners of (u, v) among the nodes, if all nodes lie on the four sides.

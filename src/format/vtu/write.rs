@@ -109,21 +109,24 @@ impl VtuWriter<'_, '_> {
     }
 
     fn cells(&mut self, mesh: MeshView) -> io::Result<()> {
-        let (faces, each, edges) = (mesh.face_count(), mesh.face_corners(), mesh.edges());
-        self.data_array("connectivity", 1, each * faces + 2 * edges.len(), || {
+        let (faces, corners, edges) = (mesh.face_count(), mesh.corner_count(), mesh.edges());
+        self.data_array("connectivity", 1, corners + 2 * edges.len(), || {
             let ends = edges.iter().flat_map(|edge| edge.vertices);
-            let of_face = |face: Face| (0..each).map(move |i| face.corners()[i]);
+            let of_face = |face: Face| (0..face.corners().len()).map(move |i| face.corners()[i]);
             mesh.faces().flat_map(of_face).chain(ends).map(i64::from)
         })?;
         let cells = faces + edges.len();
-        let corners = (each * faces) as i64;
         self.data_array("offsets", 1, cells, || {
-            let of_faces = (1..=faces as i64).map(|rank| each as i64 * rank);
-            of_faces.chain((1..=edges.len() as i64).map(move |rank| corners + 2 * rank))
+            let ends = mesh.faces().scan(0, |end, face| {
+                *end += face.corners().len() as i64;
+                Some(*end)
+            });
+            ends.chain((1..=edges.len() as i64).map(move |rank| corners as i64 + 2 * rank))
         })?;
         self.data_array("types", 1, cells, || {
-            let code = if mesh.has_quads() { QUADRILATERAL } else { TRIANGLE };
-            std::iter::repeat_n(code as u8, faces)
+            let quads = mesh.quad_count();
+            std::iter::repeat_n(QUADRILATERAL as u8, quads)
+                .chain(std::iter::repeat_n(TRIANGLE as u8, faces - quads))
                 .chain(std::iter::repeat_n(LINE as u8, edges.len()))
         })
     }
