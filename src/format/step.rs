@@ -1,18 +1,22 @@
 //! STEP files (ISO 10303-21): the faces of the shells of a part with the edges that they share, as a
 //! model. With the Cargo feature `step` only.
 //!
-//! Read are the faces of closed and open shells on planes, cylinders, cones, spheres, tori and
-//! B-spline surfaces; their edges on lines, circles, ellipses, polylines and B-spline curves. An edge
-//! that faces share is one curve of the model, so that their meshes have its points in common. Records
+//! Read are the faces of closed and open shells on planes, cylinders, cones, spheres, tori, surfaces of
+//! extrusion and of revolution, and B-spline surfaces; their edges on lines, circles, ellipses,
+//! polylines and B-spline curves. An edge that faces share is one curve of the model, so that their
+//! meshes have its points in common. A part of an assembly is read once for each of its places. Records
 //! are parsed by the crate `ruststep`, one at a time and only those that faces are made of.
 //!
 //! Source: ISO 10303-21:2016 (the text), ISO 10303-42:2022 (the shapes).
 
+mod assembly;
 mod boundary;
 mod curve;
+mod path;
 mod record;
 mod scan;
 mod surface;
+mod swept;
 mod turned;
 
 use super::domain_file::{DomainReadError, Problem, without_mark};
@@ -22,7 +26,7 @@ use crate::model::{Model, Patch};
 use crate::surface::Side;
 use crate::vector::Vector;
 use boundary::Use;
-use record::{Entity, Records};
+use record::{Entity, Records, Rigid};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Read<T> = Result<T, DomainReadError>;
@@ -56,6 +60,14 @@ pub fn read(bytes: &[u8]) -> Result<Model, DomainReadError> {
     reader.model()
 }
 
+/// A face in one of the places of its part.
+struct Standing {
+    face: u64,
+    /// Which of the places, from 0.
+    copy: usize,
+    place: Rigid,
+}
+
 struct Reader<'a> {
     records: &'a Records<'a>,
     /// Radians in the unit of plane angles.
@@ -70,26 +82,36 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn model(&mut self) -> Read<Model> {
-        self.refuse_placements()?;
+        let assembly = self.assembly()?;
         let mut faces = Vec::new();
         let mut seen = BTreeSet::new();
         for shell in self.records.of_kinds(&["CLOSED_SHELL", "OPEN_SHELL"]) {
             let shell = self.records.entity(shell)?;
-            for face in shell.fields(None)?.references(1, "the faces")? {
-                if !seen.insert(face) {
-                    let text = format!("face #{face} stands in shells twice");
-                    return Err(shell.fail(&text));
-                }
-                faces.push(face);
+            let own = shell.fields(None)?.references(1, "the faces")?;
+            if let Some(twice) = own.iter().find(|face| !seen.insert(**face)) {
+                let text = format!("face #{twice} stands in shells twice");
+                return Err(shell.fail(&text));
             }
+            let places = assembly.places(&shell)?;
+            let copies = places.into_iter().enumerate();
+            faces.extend(copies.flat_map(|(copy, place)| {
+                own.iter().map(move |&face| Standing { face, copy, place }).collect::<Vec<_>>()
+            }));
         }
         if faces.is_empty() {
             let text = "the file has no shell (CLOSED_SHELL, OPEN_SHELL) with faces";
             return Err(Problem::Step(text.to_owned()).at(Place::Made));
         }
         let mut model = Model { notes: vec![self.records.lengths()?], ..Model::default() };
-        for (i, &face) in faces.iter().enumerate() {
-            self.face(face, &mut model).map_err(|error| of_face(error, i + 1))?;
+        let mut before = None;
+        for (i, standing) in faces.iter().enumerate() {
+            // A part that stands elsewhere has edges of its own.
+            if before.replace(standing.copy).is_some_and(|copy| copy != standing.copy) {
+                self.edges.clear();
+                self.rims.clear();
+            }
+            self.records.stand(standing.place);
+            self.face(standing, &mut model).map_err(|error| of_face(error, i + 1))?;
         }
         let size = model.diagonal();
         let uncertainty =
@@ -98,15 +120,8 @@ impl Reader<'_> {
         Ok(model)
     }
 
-    /// Parts that an assembly moves would lie in wrong places.
-    fn refuse_placements(&self) -> Read<()> {
-        let kinds = ["MAPPED_ITEM", "NEXT_ASSEMBLY_USAGE_OCCURRENCE"];
-        let Some(id) = self.records.of_kinds(&kinds).next() else { return Ok(()) };
-        let text = "the file is an assembly, whose placements are not read; export one part";
-        Err(self.records.entity(id)?.fail(text))
-    }
-
-    fn face(&mut self, id: u64, model: &mut Model) -> Read<()> {
+    fn face(&mut self, standing: &Standing, model: &mut Model) -> Read<()> {
+        let id = standing.face;
         let face = self.records.entity(id)?;
         if !["ADVANCED_FACE", "FACE_SURFACE"].contains(&face.kind()) {
             return Err(face.fail("a face of this kind is not read"));
@@ -124,7 +139,10 @@ impl Reader<'_> {
         if let Some(trim) = cut.trim {
             model.trims.insert(number, trim);
         }
-        let name = format!("#{id}");
+        let name = match standing.copy {
+            0 => format!("#{id}"),
+            copy => format!("#{id} in place {}", copy + 1),
+        };
         model.patches.push(Patch { name, ..Patch::plain(number, cut.surface) });
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::domain::validate::loop_orientation;
 use crate::metric::FirstForm;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
-use crate::surface::{Surface, Tangents};
+use crate::surface::{Side, Surface, Tangents};
 use crate::vector::{Vector, distance, dot, sub};
 
 /// A shared curve as a part of a loop.
@@ -57,9 +57,14 @@ impl Loops<'_> {
             ends.push([list[0], list[list.len() - 1]]);
             nodes.extend(&list[..list.len() - 1]);
         }
-        for (i, [_, last]) in ends.iter().enumerate() {
+        let mut at = 0;
+        for (i, (cut, [_, last])) in cuts.iter().zip(&ends).enumerate() {
             let [first, _] = ends[(i + 1) % ends.len()];
-            self.demand_joint(last, &first)?;
+            at += self.curves[cut.curve].nodes.len() - 1;
+            if let Some(pole) = self.demand_joint(last, &first)? {
+                nodes.insert(at, pole);
+                at += 1;
+            }
         }
         if nodes.len() < 3 {
             let count = nodes.len();
@@ -70,7 +75,9 @@ impl Loops<'_> {
         Ok(nodes)
     }
 
-    fn demand_joint(&self, last: &Node, first: &Node) -> Result<(), String> {
+    /// Whether one curve of a loop goes on where another ends: in one place, or in two of a side that
+    /// is a pole. Then the node where the first ends is one more of the loop.
+    fn demand_joint(&self, last: &Node, first: &Node) -> Result<Option<Node>, String> {
         let [from, to] = [last, first].map(|node| self.points[node.vertex as usize]);
         if last.vertex != first.vertex {
             let gap = distance(from, to);
@@ -80,12 +87,25 @@ impl Loops<'_> {
         let far = (last.u - first.u).abs() > PARAMETERS * (u1 - u0)
             || (last.v - first.v).abs() > PARAMETERS * (v1 - v0);
         match far {
+            true if self.along_pole(last, first) => Ok(Some(*last)),
             true => Err(format!(
                 "the loop is not closed in (u, v): it comes to ({}, {}) and goes on from ({}, {}), which are one point of space",
                 last.u, last.v, first.u, first.v
             )),
-            false => Ok(()),
+            false => Ok(None),
         }
+    }
+
+    /// Whether two places lie on a side that is a pole.
+    fn along_pole(&self, a: &Node, b: &Node) -> bool {
+        let [[u0, u1], [v0, v1]] = self.surface.domain();
+        let is_on = |side: Side| match side {
+            Side::South => a.v == v0 && b.v == v0,
+            Side::East => a.u == u1 && b.u == u1,
+            Side::North => a.v == v1 && b.v == v1,
+            Side::West => a.u == u0 && b.u == u0,
+        };
+        Side::ALL.into_iter().any(|side| is_on(side) && self.surface.side(side).is_point())
     }
 
     /// The nodes along a curve of a loop, both ends included.

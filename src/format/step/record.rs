@@ -4,7 +4,7 @@ use super::super::domain_file::{DomainReadError, Problem};
 use super::Read;
 use super::scan::Statement;
 use crate::domain::Place;
-use crate::vector::{Vector, along, cross, dot, unit};
+use crate::vector::{Vector, along, cross, dot, sub, unit};
 use ruststep::ast::{EntityInstance, Name, Parameter, Record};
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -15,10 +15,57 @@ use std::str::FromStr;
 /// parsed twice.
 const UNFOLDING: usize = 64;
 
+/// What is said where they are more.
+const TOO_MUCH: &str = "the references of the file unfold to many times its size";
+
 pub(super) struct Records<'a> {
     statements: BTreeMap<u64, Statement<'a>>,
     /// Bytes that may still be parsed.
     budget: Cell<usize>,
+    /// Where the part stands that is being read.
+    place: Cell<Rigid>,
+}
+
+/// A map that keeps lengths: what becomes of the three axes, and of the origin.
+#[derive(Clone, Copy)]
+pub(super) struct Rigid {
+    axes: [Vector; 3],
+    shift: Vector,
+}
+
+impl Rigid {
+    pub(super) const IDENTITY: Self =
+        Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], shift: [0.0; 3] };
+
+    /// The map that brings one frame to another.
+    pub(super) fn between(from: &Frame, to: &Frame) -> Self {
+        let same = from.origin == to.origin && from.axes == to.axes;
+        if same {
+            return Self::IDENTITY;
+        }
+        let image = |p: Vector| {
+            let parts = from.axes.map(|axis| dot(axis, p));
+            (0..3).fold([0.0; 3], |sum, i| along(sum, parts[i], to.axes[i]))
+        };
+        let axes = Self::IDENTITY.axes.map(image);
+        Self { axes, shift: sub(to.origin, image(from.origin)) }
+    }
+
+    fn vector(&self, p: Vector) -> Vector {
+        if self.axes == Self::IDENTITY.axes {
+            return p;
+        }
+        (0..3).fold([0.0; 3], |sum, i| along(sum, p[i], self.axes[i]))
+    }
+
+    fn point(&self, p: Vector) -> Vector {
+        if self.shift == [0.0; 3] { self.vector(p) } else { along(self.vector(p), 1.0, self.shift) }
+    }
+
+    /// This map after another.
+    pub(super) fn after(&self, first: &Self) -> Self {
+        Self { axes: first.axes.map(|axis| self.vector(axis)), shift: self.point(first.shift) }
+    }
 }
 
 /// A record.
@@ -48,7 +95,36 @@ fn problem(text: String, line: u64) -> DomainReadError {
 
 impl<'a> Records<'a> {
     pub(super) fn new(statements: BTreeMap<u64, Statement<'a>>, size: usize) -> Self {
-        Self { statements, budget: Cell::new(UNFOLDING.saturating_mul(size)) }
+        let budget = Cell::new(UNFOLDING.saturating_mul(size));
+        Self { statements, budget, place: Cell::new(Rigid::IDENTITY) }
+    }
+
+    /// From now on points and directions are those of a part that stands there.
+    pub(super) fn stand(&self, place: Rigid) {
+        self.place.set(place);
+    }
+
+    /// The representations of shapes, in the order of their numbers.
+    pub(super) fn representations(&self) -> impl Iterator<Item = u64> + '_ {
+        let is_one = |statement: &Statement| {
+            let text = statement.text.split_once('=').map_or("", |(_, text)| text.trim_start());
+            let end = text.find('(').unwrap_or(0);
+            let kind = text[..end].trim_end();
+            // That one says where a part stands, and has no items.
+            kind.ends_with("SHAPE_REPRESENTATION") && !kind.starts_with("CONTEXT_DEPENDENT")
+        };
+        self.statements.iter().filter(move |(_, s)| is_one(s)).map(|(&id, _)| id)
+    }
+
+    /// Pays for work of this many bytes.
+    pub(super) fn spend(&self, bytes: usize, entity: &Entity) -> Read<()> {
+        match self.budget.get().checked_sub(bytes) {
+            Some(left) => {
+                self.budget.set(left);
+                Ok(())
+            }
+            None => Err(problem(TOO_MUCH.to_owned(), entity.line)),
+        }
     }
 
     /// The records of some kinds in the order of their numbers, found without parsing.
@@ -62,7 +138,7 @@ impl<'a> Records<'a> {
     }
 
     /// The complex records that have a part.
-    fn with_part<'k>(&'k self, part: &'k str) -> impl Iterator<Item = u64> + 'k {
+    pub(super) fn with_part<'k>(&'k self, part: &'k str) -> impl Iterator<Item = u64> + 'k {
         let has = move |s: &Statement| {
             s.text
                 .split_once('=')
@@ -76,8 +152,7 @@ impl<'a> Records<'a> {
             return Err(Problem::Step(format!("record #{id} is not in the file")).at(Place::Made));
         };
         let Some(left) = self.budget.get().checked_sub(text.len()) else {
-            let text = "the references of the file unfold to many times its size";
-            return Err(problem(text.to_owned(), line));
+            return Err(problem(TOO_MUCH.to_owned(), line));
         };
         self.budget.set(left);
         let whole = format!("{text};");
@@ -145,7 +220,47 @@ impl<'a> Records<'a> {
 
     /// A point.
     pub(super) fn point(&self, id: u64) -> Read<Vector> {
-        self.triple(id, "CARTESIAN_POINT")
+        Ok(self.place.get().point(self.triple(id, "CARTESIAN_POINT")?))
+    }
+
+    /// A direction, of any length.
+    fn direction(&self, id: u64) -> Read<Vector> {
+        Ok(self.place.get().vector(self.triple(id, "DIRECTION")?))
+    }
+
+    /// The direction of a vector, of length 1.
+    pub(super) fn vector(&self, id: u64) -> Read<Vector> {
+        let entity = self.entity(id)?;
+        if entity.kind() != "VECTOR" {
+            return Err(entity.fail("a VECTOR should be here"));
+        }
+        let direction = self.direction(entity.fields(None)?.reference(1, "the direction")?)?;
+        unit(direction).ok_or_else(|| entity.fail("a direction has a length"))
+    }
+
+    /// A point of a line, and its direction.
+    pub(super) fn line(&self, line: &Entity) -> Read<[Vector; 2]> {
+        let fields = line.fields(None)?;
+        let point = self.point(fields.reference(1, "a point")?)?;
+        Ok([point, self.vector(fields.reference(2, "a vector")?)?])
+    }
+
+    /// A point of an axis, and its direction.
+    pub(super) fn axis(&self, id: u64) -> Read<[Vector; 2]> {
+        let entity = self.entity(id)?;
+        if entity.kind() != "AXIS1_PLACEMENT" {
+            return Err(entity.fail("an AXIS1_PLACEMENT should be here"));
+        }
+        let fields = entity.fields(None)?;
+        let point = self.point(fields.reference(1, "the origin")?)?;
+        let direction = match fields.list.get(2) {
+            None | Some(Parameter::NotProvided | Parameter::Omitted) => {
+                self.place.get().vector([0.0, 0.0, 1.0])
+            }
+            _ => self.direction(fields.reference(2, "the direction")?)?,
+        };
+        let direction = unit(direction).ok_or_else(|| entity.fail("a direction has a length"))?;
+        Ok([point, direction])
     }
 
     fn triple(&self, id: u64, kind: &str) -> Read<Vector> {
@@ -177,10 +292,11 @@ impl<'a> Records<'a> {
         let direction = |i: usize| -> Read<Option<Vector>> {
             match fields.list.get(i) {
                 None | Some(Parameter::NotProvided | Parameter::Omitted) => Ok(None),
-                _ => Ok(Some(self.triple(fields.reference(i, "a direction")?, "DIRECTION")?)),
+                _ => Ok(Some(self.direction(fields.reference(i, "a direction")?)?)),
             }
         };
-        let axis = direction(2)?.unwrap_or([0.0, 0.0, 1.0]);
+        let up = self.place.get().vector([0.0, 0.0, 1.0]);
+        let axis = direction(2)?.unwrap_or(up);
         let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
         let mut aside = [0.0; 3];
         aside[least] = 1.0;
@@ -269,6 +385,15 @@ impl Fields<'_> {
 
     pub(super) fn references(&self, i: usize, what: &str) -> Read<Vec<u64>> {
         self.all(i, what, reference)
+    }
+
+    /// All records that the parameters name, in lists too.
+    pub(super) fn mentioned(&self) -> Vec<u64> {
+        let of = |parameter: &Parameter| match parameter {
+            Parameter::List(list) => list.iter().filter_map(reference).collect(),
+            other => reference(other).into_iter().collect::<Vec<u64>>(),
+        };
+        self.list.iter().flat_map(of).collect()
     }
 
     /// Rows of references.

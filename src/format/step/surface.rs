@@ -25,6 +25,9 @@ impl Reader<'_> {
             | "CONICAL_SURFACE"
             | "SPHERICAL_SURFACE"
             | "TOROIDAL_SURFACE" => self.turned(base, face, loops),
+            "SURFACE_OF_LINEAR_EXTRUSION" | "SURFACE_OF_REVOLUTION" => {
+                self.swept(base, face, loops)
+            }
             "B_SPLINE_SURFACE_WITH_KNOTS" | "B_SPLINE_SURFACE" => {
                 let surface = self.tensor(base)?;
                 let surface = surface.map_err(|error| base.at(error.into()))?;
@@ -33,7 +36,8 @@ impl Reader<'_> {
                 Ok(Cut { surface, trim })
             }
             _ => {
-                let known = "planes, cylinders, cones, spheres, tori and B-splines with knots are";
+                let known = "planes, cylinders, cones, spheres, tori, \
+                             surfaces of extrusion and of revolution, and B-splines with knots are";
                 Err(base.fail(&format!("a surface of this kind is not read: {known}")))
             }
         }
@@ -69,11 +73,20 @@ impl Reader<'_> {
 
     /// A piece of a plane that holds the loops with room around.
     fn plane(&self, base: &Entity, face: &Entity, loops: &[Ring]) -> Read<Cut> {
+        let frame = base.fields(None)?.reference(1, "the frame")?;
+        self.flat(self.records.frame(frame)?, (base, face), loops)
+    }
+
+    /// The same in a frame.
+    pub(super) fn flat(
+        &self,
+        Frame { origin, axes: [x, y, _] }: Frame,
+        (base, face): (&Entity, &Entity),
+        loops: &[Ring],
+    ) -> Read<Cut> {
         if loops.is_empty() {
             return Err(face.fail("a plane needs a loop around it"));
         }
-        let frame = base.fields(None)?.reference(1, "the frame")?;
-        let Frame { origin, axes: [x, y, _] } = self.records.frame(frame)?;
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for p in loops.iter().flat_map(|ring| self.points(ring)) {
             for (range, way) in ranges.iter_mut().zip([x, y]) {

@@ -4,6 +4,7 @@
 //! that no loop crosses where the surface comes round. u runs along the profile, v is the angle.
 
 use super::boundary::{Ring, Use};
+use super::path::{Path, Places, SAME, beginning, outline, snapped};
 use super::record::{Entity, Frame};
 use super::surface::{Cut, line};
 use super::{RIMS, Read, Reader};
@@ -11,12 +12,10 @@ use crate::curve::Curve;
 use crate::model::{Trim, TrimCurve};
 use crate::surface::{Revolution, Surface};
 use crate::vector::{Vector, along, dot, scale, sub};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Points on each edge whose places are found.
 const SAMPLES: u32 = 64;
-/// Angles nearer than this (radians) are one.
-const SAME: f64 = 1e-6;
 
 #[derive(Clone, Copy)]
 enum Shape {
@@ -30,14 +29,6 @@ enum Shape {
 struct Turned {
     frame: Frame,
     shape: Shape,
-}
-
-/// Where a loop runs: for each edge the places of its samples, in the direction of the loop. The
-/// first number is a height along the axis or an angle of the tube, the second the angle about the axis.
-struct Path {
-    edges: Vec<Vec<[f64; 2]>>,
-    /// How far it ends from where it starts.
-    winding: [f64; 2],
 }
 
 impl Turned {
@@ -60,6 +51,35 @@ impl Turned {
         }
     }
 
+    /// The height of a cone's apex.
+    fn apex(&self) -> Option<f64> {
+        match self.shape {
+            Shape::Straight { radius, slope } if slope != 0.0 => Some(-radius / slope),
+            _ => None,
+        }
+    }
+
+    /// Whether a pole at a height or an angle of the tube is where the profile ends.
+    fn ends_at(&self, h: f64) -> bool {
+        match self.shape {
+            Shape::Straight { slope, .. } => slope < 0.0,
+            Shape::Round { .. } => h > 0.0,
+        }
+    }
+
+    /// Where the loops of a face run; `None` if a pole lies inside an edge, or a loop does not come
+    /// back to where it starts.
+    fn paths(&self, reader: &Reader, loops: &[Ring]) -> Result<(Vec<Path>, Option<usize>), &'static str> {
+        let round = self.is_tube().then_some(TAU);
+        let places = Places {
+            of: &|p| self.place(p),
+            periods: [round, Some(TAU)],
+            is_end: &|h| self.ends_at(h),
+            is_mirrored: true,
+        };
+        reader.paths(&places, loops)
+    }
+
     fn is_tube(&self) -> bool {
         matches!(self.shape, Shape::Round { ring, .. } if ring > 0.0)
     }
@@ -79,7 +99,13 @@ impl Turned {
     fn profile(&self, [low, high]: [f64; 2], v: f64) -> Result<Curve, crate::curve::CurveError> {
         let (from, to) = (self.at([low, v]), self.at([high, v]));
         match self.shape {
-            Shape::Straight { .. } => line(from, to),
+            Shape::Straight { .. } => {
+                let tip = |h: f64, p: Vector| match self.apex() == Some(h) {
+                    true => along(self.frame.origin, h, self.frame.axes[2]),
+                    false => p,
+                };
+                line(tip(low, from), tip(high, to))
+            }
             Shape::Round { ring, .. } if high - low >= TAU - SAME => {
                 let Frame { origin, axes: [x, y, _] } = self.frame;
                 let (sine, cosine) = libm::sincos(v);
@@ -119,24 +145,38 @@ impl Reader<'_> {
         if let Some(cut) = self.whole(turned, base, face, loops)? {
             return Ok(cut);
         }
-        let turned = self.averted(turned, loops);
-        let mut paths: Vec<Path> = Vec::new();
-        for ring in loops {
-            let path = self.path(turned, ring);
-            let path =
-                path.ok_or_else(|| face.fail("a loop runs through a pole, which is not read"))?;
-            if path.winding.iter().any(|turn| turn.abs() > SAME) {
-                return Err(
-                    face.fail("a loop goes around the surface without a seam, which is not read")
-                );
-            }
-            paths.push(path);
-        }
-        let outer = outline(&paths, loops);
+        let averted = self.averted(turned, loops);
+        let (turned, found) = match averted.paths(self, loops) {
+            Ok(found) => (averted, found),
+            // A loop through both poles of a sphere may be all around the other ones.
+            Err(_) => (turned, turned.paths(self, loops).map_err(|text| face.fail(text))?),
+        };
+        let (paths, outer) = found;
         if outer.is_none() && !matches!(turned.shape, Shape::Round { .. }) {
             return Err(face.fail("no loop bounds the surface"));
         }
         self.cut(turned, (base, face), (loops, paths, outer))
+    }
+
+    /// Where loops run, and which of them is the outline.
+    pub(super) fn paths(
+        &self,
+        places: &Places,
+        loops: &[Ring],
+    ) -> Result<(Vec<Path>, Option<usize>), &'static str> {
+        let mut paths: Vec<Path> = Vec::new();
+        for ring in loops {
+            let trail = |&edge: &Use| (edge.id, self.samples(edge, SAMPLES));
+            let trails: Vec<_> = ring.edges.iter().map(trail).collect();
+            let path = Path::along(places, ring, &trails);
+            let path = path.ok_or("an edge runs through a pole between its vertices, which is not read")?;
+            if !path.is_closed() {
+                return Err("a loop goes around the surface without a seam, which is not read");
+            }
+            paths.push(path);
+        }
+        let outer = outline(places, &paths, loops);
+        Ok((paths, outer))
     }
 
     fn shape(&self, base: &Entity) -> Read<Turned> {
@@ -238,34 +278,6 @@ impl Reader<'_> {
         Turned { frame: Frame { origin, axes: [x, crate::vector::cross(z, x), z] }, ..turned }
     }
 
-    /// Where a loop runs, without jumps; `None` if it meets a pole.
-    fn path(&self, turned: Turned, ring: &Ring) -> Option<Path> {
-        let mut last: Option<[f64; 2]> = None;
-        let mut edges = Vec::new();
-        for &edge in &ring.edges {
-            let mut places = Vec::new();
-            for p in self.samples(edge, SAMPLES) {
-                let mut place = turned.place(p);
-                if place[1].is_nan() {
-                    return None;
-                }
-                if let Some(last) = last {
-                    place[1] = nearby(place[1], last[1]);
-                    if turned.is_tube() {
-                        place[0] = nearby(place[0], last[0]);
-                    }
-                }
-                last = Some(place);
-                places.push(place);
-            }
-            edges.push(places);
-        }
-        let (first, last) = (edges.first()?.first()?, last?);
-        let winding = [last[0] - first[0], last[1] - first[1]];
-        let size = if turned.is_tube() { 1.0 } else { f64::INFINITY };
-        Some(Path { edges, winding: [winding[0] / size, winding[1]] })
-    }
-
     fn cut(
         &self,
         turned: Turned,
@@ -281,9 +293,12 @@ impl Reader<'_> {
                 let room = 0.05 * (high - low);
                 let wide = [low - room, high + room];
                 // Not beyond the apex.
-                let is_narrow = |h: f64| radius + slope * h <= 0.0;
-                let [w0, w1] = wide;
-                [if is_narrow(w0) { low } else { w0 }, if is_narrow(w1) { high } else { w1 }]
+                let end = |h: f64, wide: f64| match turned.apex() {
+                    Some(apex) if (h - apex).abs() <= SAME * (high - low) => apex,
+                    _ if radius + slope * wide <= 0.0 => h,
+                    _ => wide,
+                };
+                [end(low, wide[0]), end(high, wide[1])]
             }
             Shape::Round { ring: 0.0, .. } => [-FRAC_PI_2, FRAC_PI_2],
             Shape::Round { .. } => {
@@ -304,6 +319,16 @@ impl Reader<'_> {
                 *place = [snapped(u, 1.0), snapped(v, TAU)];
             }
         }
+        let trim = self.placed(face, (loops, paths, outer))?;
+        Ok(Cut { surface: surface.joined(), trim: Some(trim) })
+    }
+
+    /// The curves of loops with their places.
+    pub(super) fn placed(
+        &self,
+        face: &Entity,
+        (loops, paths, outer): (&[Ring], Vec<Path>, Option<usize>),
+    ) -> Read<Trim> {
         let mut rings = Vec::new();
         for (ring, path) in loops.iter().zip(paths) {
             let mut curves = Vec::new();
@@ -316,53 +341,6 @@ impl Reader<'_> {
             rings.push(curves);
         }
         let outline = outer.map(|i| rings.remove(i));
-        Ok(Cut { surface: surface.joined(), trim: Some(Trim { outline, holes: rings }) })
-    }
-}
-
-impl Path {
-    /// From the least to the greatest of one of the numbers.
-    fn range(&self, i: usize) -> [f64; 2] {
-        let all = self.edges.iter().flatten().map(|place| place[i]);
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-    }
-
-    /// Twice the area that it goes around.
-    fn area(&self) -> f64 {
-        let places: Vec<[f64; 2]> = self.edges.iter().flatten().copied().collect();
-        let next = places.iter().cycle().skip(1);
-        places.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
-    }
-}
-
-/// The loop that bounds the surface from outside. (u, v) is a mirror image of the surface seen from
-/// outside, so that such a loop, which has the surface at its left hand, has a negative area.
-fn outline(paths: &[Path], loops: &[Ring]) -> Option<usize> {
-    let outer = |i: &usize| (paths[*i].area() < 0.0) == loops[*i].is_left;
-    let areas = |&i: &usize, &j: &usize| paths[i].area().abs().total_cmp(&paths[j].area().abs());
-    (0..paths.len()).filter(outer).max_by(areas)
-}
-
-/// Where the surface should come round: at the loop's first angle if it goes all around, opposite to its
-/// middle otherwise, or beside it if it is a hole.
-fn beginning([low, high]: [f64; 2], is_hole: bool) -> f64 {
-    let middle = 0.5 * (low + high);
-    let is_full = high - low >= TAU - SAME;
-    if is_full && !is_hole { low } else { middle - PI }
-}
-
-/// The angle by full turns nearest to another.
-fn nearby(angle: f64, other: f64) -> f64 {
-    angle + TAU * libm::round((other - angle) / TAU)
-}
-
-/// A place on an end of the range where it is as near as angles are told apart.
-fn snapped(x: f64, end: f64) -> f64 {
-    if x.abs() <= SAME {
-        0.0
-    } else if (x - end).abs() <= SAME {
-        end
-    } else {
-        x
+        Ok(Trim { outline, holes: rings })
     }
 }
