@@ -23,6 +23,7 @@ mod patch;
 mod sizing;
 mod smooth;
 mod structured;
+mod tip;
 mod trim;
 
 use crate::curve::CurveJet;
@@ -45,6 +46,7 @@ use sizing::{Curvature, Own};
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 use structured::{Fan, Quarters};
+use tip::TipFan;
 
 pub use structured::PatchGridError;
 
@@ -275,8 +277,8 @@ fn mesh_once(
     observer: &mut dyn Observer,
 ) -> Result<(SurfaceMeshed, Vec<Source>), SurfaceMeshError> {
     observer.stage(Stage::Background);
-    let plan = Plan::new(model, options, finer)?;
-    let rims = plan.rims(model)?;
+    let mut plan = Plan::new(model, options, finer)?;
+    let mut rims = plan.rims(model)?;
     if let SurfaceMethod::Grid(method) = options.method {
         let limit = options.common.triangles_max;
         return Ok((plan.grids(model, &rims, (method, limit), observer)?, Vec::new()));
@@ -284,6 +286,7 @@ fn mesh_once(
     if options.method == SurfaceMethod::Direct {
         return Ok((plan.direct(model, &rims, &options.common, observer)?, Vec::new()));
     }
+    let tips = tip::fans(&mut plan.outline, &mut rims);
     let drafts = plan.drafts(model, &rims)?;
 
     plan.demand_spacings()?;
@@ -322,6 +325,10 @@ fn mesh_once(
         meshed.improved[1] += patch.moves;
         let of = &model.patches[piece.patch];
         weld.add(i as u32, (of.marker, &of.name), &rims[i], &patch)?;
+    }
+    for TipFan { piece, corners } in tips {
+        let of = plan.outline.pieces[piece as usize].patch;
+        weld.push(piece, model.patches[of].marker, corners);
     }
     observer.stage(Stage::Collect);
     (meshed.mesh, meshed.parameters) = weld.finish(model, &plan.outline, &rims);
@@ -408,15 +415,15 @@ impl Plan {
         let cap = if given.is_some() || outline.needs_default() { spacing } else { f64::INFINITY };
         let growth = options.common.growth;
         let mut sources = Vec::new();
+        if options.method == SurfaceMethod::Front {
+            sources = tip::sources(&outline, spacing);
+        }
         if curvature.is_on() {
-            sources = samples(&outline, &curvature);
+            sources.extend(samples(&outline, &curvature));
             sources.extend(finer);
         }
         let near = SpaceField::new(&sources, growth, spacing);
-        let along = |jet: &CurveJet| match curvature.is_on() {
-            true => curvature.along(jet).min(near.at(jet.point)),
-            false => spacing,
-        };
+        let along = |jet: &CurveJet| curvature.along(jet).min(near.at(jet.point));
         outline.cut(&along)?;
         if matches!(options.method, SurfaceMethod::Grid(_)) {
             outline.even(&along)?;

@@ -12,6 +12,7 @@
 mod assembly;
 mod boundary;
 mod curve;
+mod foot;
 mod path;
 mod record;
 mod scan;

@@ -60,6 +60,22 @@ impl Rim {
         self.nodes.extend(nodes);
     }
 
+    /// Puts nodes in the place of node `k` of the first loop and the one after it.
+    pub(super) fn replace_pair(&mut self, k: usize, new: Vec<Node>) {
+        let sides = self.loops().next().map_or(0, |range| range.len());
+        let (count, longer) = (new.len(), new.len() as isize - 2);
+        match k + 1 < sides {
+            true => drop(self.nodes.splice(k..k + 2, new)),
+            // The pair is the last node and the first.
+            false => {
+                self.nodes.splice(k..=k, new);
+                self.nodes.remove(0);
+            }
+        }
+        debug_assert!(count >= 2, "a ring has more nodes than a pole");
+        self.starts.iter_mut().skip(1).for_each(|start| *start = start.saturating_add_signed(longer));
+    }
+
     /// Nodes of the loops.
     pub(super) fn loops(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
         let ends = self.starts.iter().skip(1).copied().chain([self.nodes.len()]);

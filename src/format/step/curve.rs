@@ -112,7 +112,13 @@ impl Reader<'_> {
                     true => Ok(whole),
                     false => whole.part(domain),
                 };
-                Some(part.map_err(|error| curve.at(error.into()))?)
+                let part = part.map_err(|error| curve.at(error.into()))?;
+                let is_closed = match curve.is_complex() {
+                    true => curve.fields(Some("B_SPLINE_CURVE"))?.says(3),
+                    false => curve.fields(None)?.says(4),
+                };
+                // What is said to be closed is closed, though rounding has kept the ends apart.
+                Some(if is_closed { part.with_ends([part.ends()[0]; 2]) } else { part })
             }
             _ => {
                 let known = "lines, circles, ellipses, polylines and B-splines with knots are";

@@ -451,6 +451,11 @@ impl Fields<'_> {
         })
     }
 
+    /// Whether a parameter is `.T.`: what is not known is taken for false.
+    pub(super) fn says(&self, i: usize) -> bool {
+        matches!(self.list.get(i), Some(Parameter::Enumeration(word)) if word == "T")
+    }
+
     /// A string or an enumeration.
     fn text(&self, i: usize) -> Option<&str> {
         match self.list.get(i)? {

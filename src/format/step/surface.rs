@@ -5,7 +5,7 @@ use super::record::{Entity, Frame};
 use super::{Read, Reader};
 use crate::curve::Curve;
 use crate::model::Trim;
-use crate::surface::{Surface, Tensor};
+use crate::surface::{Side, Surface, Tensor};
 use crate::vector::{Vector, along, distance, dot, sub};
 
 /// A surface, and what its loops leave of it; all where there is no trim.
@@ -31,9 +31,13 @@ impl Reader<'_> {
             "B_SPLINE_SURFACE_WITH_KNOTS" | "B_SPLINE_SURFACE" => {
                 let surface = self.tensor(base)?;
                 let surface = surface.map_err(|error| base.at(error.into()))?;
+                let (surface, is_closed) = (Surface::Tensor(surface), closed(base)?);
+                let has_pole = Side::ALL.iter().any(|&side| surface.side(side).is_point());
+                if !loops.is_empty() && (has_pole || is_closed.contains(&true)) {
+                    return self.around(surface, is_closed, (base, face), loops);
+                }
                 let trim = (!loops.is_empty()).then(|| self.trim(loops));
-                let surface = Surface::Tensor(surface).joined();
-                Ok(Cut { surface, trim })
+                Ok(Cut { surface: surface.joined(), trim })
             }
             _ => {
                 let known = "planes, cylinders, cones, spheres, tori, \
@@ -137,6 +141,15 @@ impl Reader<'_> {
             }
         }))
     }
+}
+
+/// Whether a B-spline surface is said to come round along u, and along v.
+fn closed(base: &Entity) -> Read<[bool; 2]> {
+    let (fields, first) = match base.is_complex() {
+        true => (base.fields(Some("B_SPLINE_SURFACE"))?, 4),
+        false => (base.fields(Some("B_SPLINE_SURFACE_WITH_KNOTS"))?, 5),
+    };
+    Ok([fields.says(first), fields.says(first + 1)])
 }
 
 /// A straight curve between two points.
