@@ -11,6 +11,7 @@
 #![doc = include_str!("../docs/pictures/surface.svg")]
 
 mod chart;
+mod cusp;
 mod defects;
 mod direct;
 mod even;
@@ -36,6 +37,7 @@ use crate::size::{Expression, ExpressionError, Prediction};
 use crate::structured::{GridMethod, GridStats};
 use crate::vector::{Vector, distance};
 use chart::{Sheet, SurfaceChart};
+use cusp::Cusp;
 use excess::{Allowed, Excess};
 use growth::{Source, SpaceField};
 use lift::Weld;
@@ -129,6 +131,22 @@ pub enum SurfaceMeshError {
         name: String,
         /// Why not.
         reason: String,
+    },
+    /// A patch whose tangent turns round at a line.
+    #[error(
+        "patch {name} has a cusp or a fold where {parameter} is {value}, near {at:?}: its tangent \
+         vanishes and turns round there, so that it has no normal (rule S33); make it two patches \
+         that meet there"
+    )]
+    Cusp {
+        /// The patch.
+        name: String,
+        /// `u` or `v`.
+        parameter: char,
+        /// Its value.
+        value: f64,
+        /// A point of the cusp.
+        at: Vector,
     },
     /// A patch is all poles.
     #[error("patch {name} is a point or a line: two neighbouring sides of it are poles")]
@@ -399,6 +417,7 @@ impl Plan {
         if outline.pieces.is_empty() {
             return Err(SurfaceMeshError::Empty);
         }
+        demand_no_cusp(model, &outline)?;
         let diagonal = model.diagonal();
         let mut curvature = Curvature {
             chord_error: options.chord_error.or(model.chord_error),
@@ -569,6 +588,18 @@ fn own_gradation(options: &SurfaceOptions) -> Result<Option<Expression>, Surface
         Gradation::Third => Err(SurfaceMeshError::PlaneGradation("third")),
         Gradation::Growth | Gradation::Uniform => Ok(None),
     }
+}
+
+/// Whether no patch that is not trimmed has a cusp.
+fn demand_no_cusp(model: &Model, outline: &Outline) -> Result<(), SurfaceMeshError> {
+    let whole = outline.pieces.iter().filter(|piece| !piece.has_outline);
+    let mut cusps = whole.filter_map(|piece| Some((piece, cusp::find(&piece.surface)?)));
+    let Some((piece, Cusp { is_across_u, parameter: value, at })) = cusps.next() else {
+        return Ok(());
+    };
+    let name = model.patches[piece.patch].name.clone();
+    let parameter = if is_across_u { 'u' } else { 'v' };
+    Err(SurfaceMeshError::Cusp { name, parameter, value, at })
 }
 
 /// The spacings that the curvature wants all over the patches.

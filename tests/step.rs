@@ -27,8 +27,14 @@ impl Writer {
         self.records.len()
     }
 
-    fn triple(&mut self, kind: &str, [x, y, z]: Point) -> usize {
-        self.add(format!("{kind}('',({x:?},{y:?},{z:?}))"))
+    fn triple(&mut self, kind: &str, p: Point) -> usize {
+        // Reals of the format have a point, with an exponent too.
+        let real = |x: f64| {
+            let text = format!("{x:?}");
+            if text.contains('.') { text } else { text.replace('e', ".e") }
+        };
+        let [x, y, z] = p.map(real);
+        self.add(format!("{kind}('',({x},{y},{z}))"))
     }
 
     fn vertex(&mut self, p: Point) -> usize {
@@ -117,6 +123,59 @@ impl Writer {
     fn round(&mut self, kind: &str, z: f64, numbers: &str) -> usize {
         let frame = self.frame([0.0, 0.0, z], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
         self.add(format!("{kind}('',#{frame},{numbers})"))
+    }
+
+    /// A B-spline curve, rational if it has weights, or a surface of rows of points with u constant.
+    fn spline_curve(
+        &mut self,
+        degree: usize,
+        points: &[Point],
+        knots: &str,
+        weights: &str,
+    ) -> usize {
+        let ids: Vec<usize> = points.iter().map(|&p| self.triple("CARTESIAN_POINT", p)).collect();
+        let ids = references(&ids);
+        self.add(match weights {
+            "" => format!(
+                "B_SPLINE_CURVE_WITH_KNOTS('',{degree},{ids},.UNSPECIFIED.,.F.,.F.,{knots},.UNSPECIFIED.)"
+            ),
+            weights => format!(
+                "( BOUNDED_CURVE() B_SPLINE_CURVE({degree},{ids},.UNSPECIFIED.,.F.,.F.) \
+                 B_SPLINE_CURVE_WITH_KNOTS({knots},.UNSPECIFIED.) CURVE() \
+                 GEOMETRIC_REPRESENTATION_ITEM() RATIONAL_B_SPLINE_CURVE({weights}) \
+                 REPRESENTATION_ITEM('') )"
+            ),
+        })
+    }
+
+    fn spline_surface(
+        &mut self,
+        degrees: [usize; 2],
+        rows: &[Vec<Point>],
+        knots: [&str; 2],
+        weights: &str,
+    ) -> usize {
+        let row = |w: &mut Self, row: &Vec<Point>| {
+            let ids: Vec<usize> = row.iter().map(|&p| w.triple("CARTESIAN_POINT", p)).collect();
+            references(&ids)
+        };
+        let rows: Vec<String> = rows.iter().map(|r| row(self, r)).collect();
+        let (rows, [p, q]) = (rows.join(","), degrees);
+        let split = |knots: &str| {
+            let (times, values) = knots.split_once("),").expect("two lists");
+            (format!("{times})"), values.to_owned())
+        };
+        let ((ut, uv), (vt, vv)) = (split(knots[0]), split(knots[1]));
+        let knots = format!("{ut},{vt},{uv},{vv},.UNSPECIFIED.");
+        let flags = ".UNSPECIFIED.,.F.,.F.,.F.";
+        self.add(match weights {
+            "" => format!("B_SPLINE_SURFACE_WITH_KNOTS('',{p},{q},({rows}),{flags},{knots})"),
+            weights => format!(
+                "( BOUNDED_SURFACE() B_SPLINE_SURFACE({p},{q},({rows}),{flags}) \
+                 B_SPLINE_SURFACE_WITH_KNOTS({knots}) GEOMETRIC_REPRESENTATION_ITEM() \
+                 RATIONAL_B_SPLINE_SURFACE({weights}) REPRESENTATION_ITEM('') SURFACE() )"
+            ),
+        })
     }
 
     fn text(&self) -> String {
@@ -302,7 +361,8 @@ fn names_units_and_extensions_are_as_the_chapter_says() {
 fn what_is_not_read_is_named_with_its_face_and_line() {
     let text = cylinder().text();
     let told = complaint(&text.replace("CYLINDRICAL_SURFACE", "OFFSET_SURFACE"));
-    for part in ["line ", "face 1: #", "(OFFSET_SURFACE)", "is not read", "cylinders", "extrusion"] {
+    for part in ["line ", "face 1: #", "(OFFSET_SURFACE)", "is not read", "cylinders", "extrusion"]
+    {
         assert!(told.contains(part), "{told}");
     }
     let told = complaint(&text.replace("CIRCLE(", "HYPERBOLA("));
@@ -356,4 +416,288 @@ fn any_changed_byte_gives_a_model_or_an_error() {
             let _ = read(&bytes).map(|model| model.diagonal());
         }
     }
+}
+
+/// Meshes an open part and checks it; its Euler number is 1.
+fn open(model: &Model, spacing: f64) -> SurfaceMeshed {
+    let mut options = SurfaceOptions::default();
+    options.common.spacing = Some(spacing);
+    let meshed = mesh_model(model, &options, &mut Unobserved).expect("a mesh");
+    let limits = SurfaceLimits::default();
+    let (report, found) = check_on_model(&meshed.mesh, (model, &limits), None, &Default::default());
+    assert!(report.passed(), "{:?}", report.findings);
+    assert_eq!((found.euler, found.euler_of_model), (1, 1));
+    meshed
+}
+
+fn area(meshed: &SurfaceMeshed) -> f64 {
+    let points = &meshed.mesh.points;
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        let (p, q) = (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
+        trigrade::vector::norm(trigrade::vector::cross(p, q)) / 2.0
+    };
+    meshed.mesh.triangles.iter().map(of).sum()
+}
+
+/// Knots 0 and 1 of a Bezier curve.
+fn bezier_knots(degree: usize) -> String {
+    format!("({0},{0}),(0.,1.)", degree + 1)
+}
+
+// spec: X75
+#[test]
+fn a_bicubic_surface_bounded_by_b_splines_has_its_points() {
+    let height =
+        |i: usize, j: usize| if (1..3).contains(&i) && (1..3).contains(&j) { 1.0 } else { 0.0 };
+    let rows: Vec<Vec<Point>> =
+        (0..4).map(|i| (0..4).map(|j| [i as f64, j as f64, height(i, j)]).collect()).collect();
+    let mut writer = Writer::default();
+    let knots = bezier_knots(3);
+    let surface = writer.spline_surface([3, 3], &rows, [&knots, &knots], "");
+    let sides = [
+        (0..4).map(|i| rows[i][0]).collect::<Vec<_>>(),
+        rows[3].clone(),
+        (0..4).map(|i| rows[3 - i][3]).collect(),
+        rows[0].iter().rev().copied().collect(),
+    ];
+    let mut path = Vec::new();
+    for (k, points) in sides.iter().enumerate() {
+        let edge = writer.edge(&format!("side {k}"), [points[0], points[3]], |w| {
+            w.spline_curve(3, points, &knots, "")
+        });
+        path.push((edge, true));
+    }
+    writer.face(surface, &[path]);
+    let model = model(&writer.text());
+    // The middle: (9/16)^2 of the inner height.
+    let meshed = open(&model, 0.25);
+    let top = meshed.mesh.points.iter().map(|p| p[2]).fold(0.0, f64::max);
+    assert!((top - 0.5625).abs() < 0.01, "{top}");
+}
+
+// spec: X75
+#[test]
+fn a_rational_quarter_of_a_cylinder_has_its_area_and_its_trim() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let arc = |z: f64| vec![[1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
+    let (low, high) = (arc(0.0), arc(2.0));
+    let rows: Vec<Vec<Point>> = (0..3).map(|i| vec![low[i], high[i]]).collect();
+    let weights = format!("(1.,{half:?},1.)");
+    let grid = format!("((1.,1.),({half:?},{half:?}),(1.,1.))");
+    let mut writer = Writer::default();
+    let (round, straight) = (bezier_knots(2), bezier_knots(1));
+    let surface = writer.spline_surface([2, 1], &rows, [&round, &straight], &grid);
+    let mut rim = |name: &str, points: &[Point]| {
+        let ends = [points[0], points[2]];
+        (writer.edge(name, ends, |w| w.spline_curve(2, points, &round, &weights)), true)
+    };
+    let (south, north) = (rim("low", &low), rim("high", &high));
+    let (east, up) = writer.line(low[2], high[2]);
+    let (west, back) = writer.line(low[0], high[0]);
+    writer.face(surface, &[vec![south, (east, up), (north.0, false), (west, !back)]]);
+    let found = area(&open(&model(&writer.text()), 0.1));
+    assert!((found / std::f64::consts::PI - 1.0).abs() < 2e-3, "{found}");
+}
+
+// spec: X75
+#[test]
+fn knots_of_full_multiplicity_that_bend_are_refused_and_smooth_ones_are_read() {
+    let sheet = |lift: f64| {
+        let x = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let z = [0.0, 0.5, 1.0, 1.5 - lift, 2.0 - 2.0 * lift];
+        let rows: Vec<Vec<Point>> =
+            (0..5).map(|i| vec![[x[i], 0.0, z[i]], [x[i], 2.0, z[i]]]).collect();
+        let mut writer = Writer::default();
+        let knots = "(3,2,3),(0.,0.5,1.)";
+        let surface = writer.spline_surface([2, 1], &rows, [knots, &bezier_knots(1)], "");
+        let side = |j: usize| rows.iter().map(|row| row[j]).collect::<Vec<Point>>();
+        let mut edge = |name: &str, j: usize| {
+            let points = side(j);
+            writer.edge(name, [points[0], points[4]], |w| w.spline_curve(2, &points, knots, ""))
+        };
+        let (south, north) = (edge("south", 0), edge("north", 1));
+        let (east, up) = writer.line(rows[4][0], rows[4][1]);
+        let (west, back) = writer.line(rows[0][0], rows[0][1]);
+        writer.face(surface, &[vec![(south, true), (east, up), (north, false), (west, !back)]]);
+        model(&writer.text())
+    };
+    let flat = area(&open(&sheet(0.0), 0.3));
+    assert!((flat - 2.0 * 20.0_f64.sqrt()).abs() < 1e-9, "{flat}");
+    let mut options = SurfaceOptions::default();
+    options.common.spacing = Some(0.3);
+    let error = mesh_model(&sheet(0.5), &options, &mut Unobserved).expect_err("a crease");
+    assert!(error.to_string().contains("creases"), "{error}");
+}
+
+/// A part swept from a circle of radius 1, by hand: its wall, and a disc at both ends.
+fn pulled(kind: &str) -> Writer {
+    let mut writer = Writer::default();
+    let [low, high] = [0.0, 2.0].map(|z| writer.circle(1.0, z));
+    let (seam, forward) = writer.line([1.0, 0.0, 0.0], [1.0, 0.0, 2.0]);
+    let wall = match kind {
+        "SURFACE_OF_LINEAR_EXTRUSION" => {
+            let frame = writer.frame([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+            let circle = writer.add(format!("CIRCLE('',#{frame},1.)"));
+            let way = writer.triple("DIRECTION", [0.0, 0.0, 3.0]);
+            let way = writer.add(format!("VECTOR('',#{way},1.)"));
+            writer.add(format!("{kind}('',#{circle},#{way})"))
+        }
+        _ => {
+            let points = [[1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, 2.0]];
+            let profile = writer.spline_curve(2, &points, &bezier_knots(2), "");
+            let origin = writer.triple("CARTESIAN_POINT", [0.0, 0.0, 5.0]);
+            let axis = writer.triple("DIRECTION", [0.0, 0.0, 1.0]);
+            let axis = writer.add(format!("AXIS1_PLACEMENT('',#{origin},#{axis})"));
+            writer.add(format!("{kind}('',#{profile},#{axis})"))
+        }
+    };
+    let path = vec![(low, true), (seam, forward), (high, false), (seam, !forward)];
+    writer.face(wall, &[path]);
+    for (circle, z) in [(low, 0.0), (high, 2.0)] {
+        writer.plane([0.0, 0.0, z], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], &[vec![(circle, true)]]);
+    }
+    writer
+}
+
+// spec: X76
+#[test]
+fn surfaces_of_extrusion_and_of_revolution_are_closed_with_their_volume() {
+    for kind in ["SURFACE_OF_LINEAR_EXTRUSION", "SURFACE_OF_REVOLUTION"] {
+        let found = volume(&meshed(&model(&pulled(kind).text()), 2));
+        assert!((found / std::f64::consts::TAU - 1.0).abs() < 0.03, "{kind}: {found}");
+    }
+}
+
+// spec: X76
+#[test]
+fn a_line_that_turns_and_one_pulled_along_itself_are_named() {
+    let text = pulled("SURFACE_OF_REVOLUTION").text();
+    let at = text.find("B_SPLINE_CURVE_WITH_KNOTS").expect("a profile");
+    let end = at + text[at..].find(";").expect("its end");
+    let line = text.lines().find(|line| line.contains("= LINE(")).expect("a line");
+    let line = line.split_once("= ").expect("a record").1.trim_end_matches(';');
+    let told = complaint(&format!("{}{line}{}", &text[..at], &text[end..]));
+    assert!(told.contains("a line that turns") && told.contains("cone"), "{told}");
+}
+
+// spec: X77
+#[test]
+fn a_cone_from_its_rim_to_its_apex_is_closed_and_so_is_half_of_one() {
+    let (tip, a, b) = ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]);
+    let slope = format!("1.,{:?}", libm::atan(-0.5));
+    let mut writer = Writer::default();
+    let circle = writer.circle(1.0, 0.0);
+    let (seam, up) = writer.line(a, tip);
+    let wall = writer.round("CONICAL_SURFACE", 0.0, &slope);
+    writer.face(wall, &[vec![(circle, true), (seam, up), (seam, !up)]]);
+    writer.plane([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], &[vec![(circle, true)]]);
+    let found = volume(&meshed(&model(&writer.text()), 2));
+    assert!((found / (2.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 0.05, "{found}");
+    // Half of it: the loop of the wall goes through the apex.
+    let mut writer = Writer::default();
+    let arc = writer.edge("arc", [a, b], |w| {
+        let frame = w.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        w.add(format!("CIRCLE('',#{frame},1.)"))
+    });
+    let [(first, up), (second, down)] = [writer.line(a, tip), writer.line(b, tip)];
+    let (base, along) = writer.line(b, a);
+    let wall = writer.round("CONICAL_SURFACE", 0.0, &slope);
+    writer.face(wall, &[vec![(arc, true), (second, down), (first, !up)]]);
+    writer.plane([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], &[vec![(arc, true), (base, along)]]);
+    let path = vec![(base, along), (first, up), (second, !down)];
+    writer.plane([0.0; 3], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], &[path]);
+    let found = volume(&meshed(&model(&writer.text()), 2));
+    assert!((found / (std::f64::consts::PI / 3.0) - 1.0).abs() < 0.05, "{found}");
+}
+
+// spec: X78
+#[test]
+fn an_edge_is_a_whole_circle_when_its_vertices_are_one_however_near_two_may_be() {
+    // All but 1e-10 of a circle, between two vertices: no whole one.
+    let mut writer = Writer::default();
+    let angle = 1e-10_f64;
+    let ends = [[libm::cos(angle), libm::sin(angle), 0.0], [1.0, 0.0, 0.0]];
+    let arc = writer.edge("arc", ends, |w| {
+        let frame = w.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        w.add(format!("CIRCLE('',#{frame},1.)"))
+    });
+    let (gap, forward) = writer.line(ends[1], ends[0]);
+    writer.plane([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], &[vec![(arc, true), (gap, forward)]]);
+    let model = model(&writer.text());
+    let trim = &model.trims[&0];
+    let curve = |i: usize| match &trim.outline.as_ref().expect("one")[i] {
+        TrimCurve::Space { curve, .. } => curve.clone(),
+        TrimCurve::Parameters { .. } => panic!("a curve in space"),
+    };
+    assert_eq!(curve(0).ends(), ends, "the two vertices are kept apart");
+    assert!(!curve(0).is_closed());
+}
+
+/// A cube whose shell stands in an assembly: its placements, each moving it along x.
+fn assembled(shifts: &[f64]) -> String {
+    let mut writer = cube();
+    let origin = writer.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+    let shell = writer.records.len();
+    let faces = references(&writer.faces);
+    let shell = writer.add(format!("CLOSED_SHELL('',{faces})")).max(shell);
+    let solid = writer.add(format!("MANIFOLD_SOLID_BREP('',#{shell})"));
+    let part = writer.add(format!("ADVANCED_BREP_SHAPE_REPRESENTATION('',(#{solid}),#1)"));
+    let whole = writer.add(format!("SHAPE_REPRESENTATION('',(#{origin}),#1)"));
+    for (i, &x) in shifts.iter().enumerate() {
+        let target = writer.frame([x, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
+        let map = match i % 2 {
+            0 => {
+                let map =
+                    writer.add(format!("ITEM_DEFINED_TRANSFORMATION('','',#{origin},#{target})"));
+                format!(
+                    "( REPRESENTATION_RELATIONSHIP('','',#{part},#{whole}) \
+                     REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{map}) \
+                     SHAPE_REPRESENTATION_RELATIONSHIP() )"
+                )
+            }
+            _ => {
+                let map = writer.add(format!("REPRESENTATION_MAP(#{origin},#{part})"));
+                let item = writer.add(format!("MAPPED_ITEM('',#{map},#{target})"));
+                format!("SHAPE_REPRESENTATION('',(#{item}),#1)")
+            }
+        };
+        writer.add(map);
+    }
+    // The writer's own shell goes: it has the same faces.
+    let text = writer.text();
+    let last = text.rfind("= CLOSED_SHELL").expect("a shell");
+    format!("{}= GROUP{}", &text[..last], &text[last + "= CLOSED_SHELL".len()..])
+}
+
+// spec: X79
+#[test]
+fn a_part_of_an_assembly_is_read_in_each_of_its_places() {
+    let model = model(&assembled(&[3.0, -4.0]));
+    assert_eq!(model.patches.len(), 12);
+    assert!(model.patches[6].name.ends_with("in place 2"), "{}", model.patches[6].name);
+    let mut options = SurfaceOptions::default();
+    options.common.spacing = Some(0.5);
+    let meshed = mesh_model(&model, &options, &mut Unobserved).expect("a mesh");
+    assert!((volume(&meshed) - 2.0).abs() < 1e-12);
+    let xs = meshed.mesh.points.iter().map(|p| p[0]);
+    let (low, high) = xs.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+    // A quarter turn about z takes the cube to x from shift - 1 to shift.
+    assert!((low + 5.0).abs() < 1e-12 && (high - 3.0).abs() < 1e-12, "{low} {high}");
+}
+
+// spec: X79
+#[test]
+fn a_part_that_stands_in_itself_is_refused() {
+    let text = assembled(&[1.0]);
+    let whole = text.find("= SHAPE_REPRESENTATION('',").expect("the whole");
+    let start = text[..whole].rfind('#').expect("its number");
+    let number = text[start..whole].trim_end_matches([' ', '=']);
+    let relation = text.find("REPRESENTATION_RELATIONSHIP('','',#").expect("a relation");
+    let from = relation + "REPRESENTATION_RELATIONSHIP('','',".len();
+    let to = from + text[from..].find(',').expect("the part");
+    let part = text[from..to].to_owned();
+    let looped = text.replacen(&format!("{part},{number})"), &format!("{part},{part})"), 1);
+    assert_ne!(looped, text);
+    assert!(complaint(&looped).contains("in itself"), "{}", complaint(&looped));
 }

@@ -340,11 +340,8 @@ fn a_patch_between_two_poles_takes_its_columns_from_the_spacing() {
     let row = |x: f64, half: f64| vec![[x, -half, 0.0], [x, 0.0, half], [x, half, 0.0]];
     let rows = [row(0.0, 0.0), row(1.0, 1.0), row(2.0, 1.0), row(3.0, 0.0)];
     let surface = Surface::Tensor(Tensor::bezier(&rows).expect("a patch"));
-    let model = Model {
-        patches: vec![Patch::plain(0, surface)],
-        spacing: Some(0.1),
-        ..Model::default()
-    };
+    let model =
+        Model { patches: vec![Patch::plain(0, surface)], spacing: Some(0.1), ..Model::default() };
     for method in [GridMethod::Transfinite, GridMethod::Elliptic] {
         let meshed = surface_grid(&model, method).expect("a grid");
         assert_right("lens", &model, &meshed);

@@ -3,13 +3,13 @@
 
 use trigrade::check::surface::{SurfaceLimits, against_model};
 use trigrade::check::{CheckOptions, Dimension, Id, Metric, Report, check};
-use trigrade::curve::clamped_knots;
+use trigrade::curve::{Curve, clamped_knots};
 use trigrade::mesh::MeshData;
 use trigrade::mesher::Unobserved;
-use trigrade::model::{Model, Patch};
-use trigrade::surface::{Surface, Tensor};
+use trigrade::model::{Model, Patch, Trim, TrimCurve};
+use trigrade::surface::{Coons, Revolution, Surface, Tensor};
 use trigrade::surface_mesher::{SurfaceMeshError, SurfaceOptions, mesh_model};
-use trigrade::vector::Vector;
+use trigrade::vector::{Vector, distance};
 
 fn model(surface: Surface, spacing: f64) -> Model {
     let patch = Patch { name: "hard".to_owned(), surface, marker: 1, reversed: false };
@@ -89,16 +89,97 @@ fn a_patch_whose_sides_touch_in_its_corners_hangs_together_by_two_vertices() {
     assert!(!ids.contains(&Id::SelfIntersection) && !ids.contains(&Id::SurfaceFold), "{ids:?}");
 }
 
-// spec: S28
+// spec: S28 S33
 #[test]
-fn a_cusp_is_meshed_in_one_piece_or_found() {
+fn a_cusp_across_a_patch_is_named_with_its_place() {
     // At the middle of this cubic the first derivative vanishes, and its direction turns round.
-    let cusp = model(swept(&[[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]), 0.05);
-    let mesh = run(&cusp).expect("a mesh");
-    let ids = findings(&cusp, &mesh);
-    // Normals turn round at the cusp: triangles across it face against one half or the other.
-    let expected = [Id::SurfaceFold, Id::SelfIntersection];
-    assert!(ids.iter().all(|id| expected.contains(id)), "{ids:?}");
+    let cusp = swept(&[[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
+    let error = run(&model(cusp, 0.05)).expect_err("no normal");
+    let SurfaceMeshError::Cusp { parameter: 'u', value, at, .. } = error else {
+        panic!("{error}");
+    };
+    assert!((value - 0.5).abs() < 1e-6 && distance(at, [0.5, 0.75, at[2]]) < 1e-9, "{error}");
+    let text = error.to_string();
+    assert!(text.contains("hard") && text.contains("S33") && text.contains("0.75"), "{text}");
+    // Its two halves meet in the cusp and are a right mesh.
+    let left = swept(&[[0.0, 0.0], [0.5, 0.5], [0.5, 0.75], [0.5, 0.75]]);
+    let right = swept(&[[0.5, 0.75], [0.5, 0.75], [0.5, 0.5], [1.0, 0.0]]);
+    let patch = |i, surface| Patch { name: format!("half {i}"), ..Patch::plain(i, surface) };
+    let patches = vec![patch(0, left), patch(1, right)];
+    let halves = Model { patches, spacing: Some(0.05), ..Model::default() };
+    let mesh = run(&halves).expect("a mesh");
+    assert_eq!(findings(&halves, &mesh), []);
+}
+
+// spec: S28 S34
+#[test]
+fn curves_that_meet_at_no_angle_give_a_right_mesh() {
+    let spline = |points: [Vector; 4]| Curve::clamped(3, points.to_vec()).expect("a curve");
+    let line = |a, b| Curve::polyline(vec![a, b]).expect("a line");
+    let (far, east, north) = ([1.6, 1.1, 0.3], [1.5, 0.0, 0.0], [0.7, 1.2, 0.0]);
+    let south = spline([[0.0; 3], [0.5, 0.0, 0.0], [1.0, -0.2, 0.0], east]);
+    let west = spline([[0.0; 3], [0.5, 0.0, 0.0], [0.8, 0.5, 0.0], north]);
+    let sides = [south, line(east, far), line(north, far), west];
+    let coons = Surface::Coons(Box::new(Coons::new(sides, None).expect("four sides")));
+    // A corner where both tangents vanish.
+    let corner = bezier(&[
+        vec![[0.0; 3], [0.0; 3], [0.0, 1.0, 0.0]],
+        vec![[0.0; 3], [0.5, 0.5, 0.2], [0.5, 1.0, 0.0]],
+        vec![[1.0, 0.0, 0.0], [1.0, 0.5, 0.0], [1.0, 1.0, 0.1]],
+    ]);
+    for surface in [coons, corner] {
+        for spacing in [0.05, 0.1, 0.2] {
+            let cusped = model(surface.clone(), spacing);
+            let mesh = run(&cusped).expect("a mesh");
+            assert_eq!(findings(&cusped, &mesh), [], "{spacing}");
+        }
+    }
+}
+
+// spec: S28 S34
+#[test]
+fn a_leaf_between_two_trimming_curves_is_meshed_to_its_tips() {
+    let plane = bezier(&[
+        vec![[-1.0, -1.0, 0.0], [-1.0, 2.0, 0.0]],
+        vec![[2.0, -1.0, 0.0], [2.0, 2.0, 0.0]],
+    ]);
+    let curve = |points: [[f64; 2]; 4]| {
+        let place = |[x, y]: [f64; 2]| [(x + 1.0) / 3.0, (y + 1.0) / 3.0, 0.0];
+        let curve = Curve::clamped(3, points.map(place).to_vec()).expect("a curve");
+        TrimCurve::Parameters { curve, rule: None, marker: None }
+    };
+    let outline = vec![
+        curve([[0.2, 0.3], [0.4, 0.3], [0.6, 0.35], [0.8, 0.5]]),
+        curve([[0.8, 0.5], [0.5, 0.6], [0.4, 0.3], [0.2, 0.3]]),
+    ];
+    let trim = Trim { outline: Some(outline), holes: Vec::new() };
+    for spacing in [0.02, 0.05, 0.1] {
+        let leaf = Model { trims: [(0, trim.clone())].into(), ..model(plane.clone(), spacing) };
+        let mesh = run(&leaf).expect("a mesh");
+        assert_eq!(findings(&leaf, &mesh), [], "{spacing}");
+    }
+}
+
+/// A cone of this slope about the z axis, with its tip at height 1.
+fn cone(slope: f64) -> Surface {
+    let profile = vec![[0.0, 0.0, 1.0], [slope, 0.0, 0.0]];
+    let profile = Curve::polyline(profile).expect("a line");
+    let cone = Revolution::new(profile, [0.0; 3], [0.0, 0.0, 1.0], [0.0, 360.0]);
+    Surface::Revolution(cone.expect("a cone"))
+}
+
+// spec: S35
+#[test]
+fn the_tip_of_a_cone_is_a_fan_of_five() {
+    for (slope, spacing) in [(1.0, 0.1), (1.0, 0.3), (0.5, 0.05), (0.5, 0.2), (0.4, 0.1)] {
+        let cone = model(cone(slope), spacing);
+        let mesh = run(&cone).expect("a mesh");
+        assert_eq!(findings(&cone, &mesh), [], "{slope} {spacing}");
+        let tip = mesh.points.iter().position(|p| *p == [0.0, 0.0, 1.0]).expect("a tip") as u32;
+        let fan = mesh.triangles.iter().filter(|t| t.contains(&tip)).count();
+        assert!(fan == 5 || slope > 0.9, "{fan} at slope {slope}");
+        assert!(worst_ratio(&mesh) < 1.6, "{}", worst_ratio(&mesh));
+    }
 }
 
 // spec: S28
@@ -106,8 +187,9 @@ fn a_cusp_is_meshed_in_one_piece_or_found() {
 fn a_map_that_folds_or_overlaps_is_found() {
     let row = |x: f64| vec![[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 2.0, 0.0]];
     let folded = model(bezier(&[row(0.0), row(3.0), row(-1.0), row(2.0)]), 0.1);
-    let ids = findings(&folded, &run(&folded).expect("a mesh"));
-    assert!(ids.contains(&Id::SelfIntersection), "{ids:?}");
+    let error = run(&folded).expect_err("a map that turns back");
+    assert!(matches!(error, SurfaceMeshError::Cusp { parameter: 'u', .. }), "{error}");
+    assert!(error.to_string().contains("hard"), "{error}");
     let looped = model(swept(&[[0.0, 0.0], [3.0, 2.0], [-2.0, 2.0], [1.0, 0.0]]), 0.1);
     let ids = findings(&looped, &run(&looped).expect("a mesh"));
     assert_eq!(ids, [Id::SelfIntersection]);

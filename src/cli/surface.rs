@@ -12,8 +12,8 @@ use super::mesh_file::{self, Drawing};
 use super::outcome::{Outcome, file_names};
 use super::output::{Cleanup, Outputs};
 use super::quads;
+use super::surface_options::{demand_on_model, demand_slope_of_use};
 use super::verdict::{self, Figures};
-use super::surface_options::{demand_slope_of_use, demand_on_model};
 use super::watch::{Watch, prediction, seconds};
 use super::words::{boundary, count};
 use crate::check::CheckOptions;
@@ -175,6 +175,7 @@ fn no_mesh(error: &SurfaceMeshError) -> Failure {
     let diagnostic = Diagnostic::new(error.to_string());
     match error {
         SurfaceMeshError::Empty
+        | SurfaceMeshError::Cusp { .. }
         | SurfaceMeshError::Curve { .. }
         | SurfaceMeshError::Grid(_)
         | SurfaceMeshError::Outline { .. }

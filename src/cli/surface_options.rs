@@ -50,28 +50,43 @@ fn of_the_plane(options: &MeshOptions) -> Vec<(bool, Idle)> {
         (options.gradation == Gradation::Third, ("--gradation third", no_mean)),
         (
             options.density == Density::AllEdges,
-            ("--density all-edges", "has a meaning for plane domains only: the edges at a node of a \
-              model are those of its curves"),
+            (
+                "--density all-edges",
+                "has a meaning for plane domains only: the edges at a node of a \
+              model are those of its curves",
+            ),
         ),
         (
             options.limit_growth,
-            ("--limit-growth", "has a meaning for plane domains only: on a model the slope of every \
-              spacing is at most --growth as it is"),
+            (
+                "--limit-growth",
+                "has a meaning for plane domains only: on a model the slope of every \
+              spacing is at most --growth as it is",
+            ),
         ),
         (
             !options.spacing_at.is_empty(),
-            ("--spacing-at", "has a meaning for plane domains only: give the curve a `spacing` in the \
-              model's file"),
+            (
+                "--spacing-at",
+                "has a meaning for plane domains only: give the curve a `spacing` in the \
+              model's file",
+            ),
         ),
         (
             !options.source.is_empty(),
-            ("--source", "has a meaning for plane domains only: on a model take --gradation with an \
-              expression of x, y and z"),
+            (
+                "--source",
+                "has a meaning for plane domains only: on a model take --gradation with an \
+              expression of x, y and z",
+            ),
         ),
         (
             options.size_field.is_some(),
-            ("--size-field", "has a meaning for plane domains only: on a model take --gradation with \
-              an expression of x, y and z"),
+            (
+                "--size-field",
+                "has a meaning for plane domains only: on a model take --gradation with \
+              an expression of x, y and z",
+            ),
         ),
         (
             options.corners.is_some(),
@@ -79,8 +94,11 @@ fn of_the_plane(options: &MeshOptions) -> Vec<(bool, Idle)> {
         ),
         (
             options.split_boundary,
-            ("--split-boundary", "has a meaning for plane domains only: curves of a model are cut to \
-              the spacing as it is"),
+            (
+                "--split-boundary",
+                "has a meaning for plane domains only: curves of a model are cut to \
+              the spacing as it is",
+            ),
         ),
         (options.max_area.is_some(), ("--max-area", "has a meaning with `--method delaunay` only")),
         (

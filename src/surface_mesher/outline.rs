@@ -73,7 +73,10 @@ impl Rim {
             }
         }
         debug_assert!(count >= 2, "a ring has more nodes than a pole");
-        self.starts.iter_mut().skip(1).for_each(|start| *start = start.saturating_add_signed(longer));
+        self.starts
+            .iter_mut()
+            .skip(1)
+            .for_each(|start| *start = start.saturating_add_signed(longer));
     }
 
     /// Nodes of the loops.

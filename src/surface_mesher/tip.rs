@@ -17,6 +17,9 @@ const FARTHER: f64 = 1.25;
 /// No ring is nearer to the pole than this fraction of the spacing.
 const NEAREST: f64 = 0.5;
 
+/// How much farther from the pole the ring is in its middle than on the seam.
+const BULGE: f64 = 0.1;
+
 /// The triangles at a tip, by vertices of the model.
 pub(super) struct TipFan {
     pub(super) piece: u32,
@@ -111,12 +114,19 @@ fn tip_at(
     let node = |j: usize| rim.nodes[(k + sides + j - 1) % sides];
     let [before, pole, other, after] = [0, 1, 2, 3].map(node);
     let is_closed = pole.vertex == other.vertex && before.vertex == after.vertex;
-    // Between a ring and another pole something must be left for the front.
-    if !is_closed || before.vertex == pole.vertex || sides < 6 {
+    // Beyond the ring something of the seam must be left for the front.
+    let goes_on = sides > 6 && node(sides - 1).vertex == node(4).vertex;
+    if !is_closed || before.vertex == pole.vertex || !goes_on {
         return None;
     }
+    let mix = |a: f64, b: f64, t: f64| a + t * (b - a);
+    // The ring bulges away from the pole, so that no edge goes straight from one end to the other.
     let at = |t: f64| {
-        [before.u + t * (after.u - before.u), before.v + t * (after.v - before.v)]
+        let out = 1.0 + 4.0 * BULGE * t * (1.0 - t);
+        [
+            mix(mix(pole.u, other.u, t), mix(before.u, after.u, t), out),
+            mix(mix(pole.v, other.v, t), mix(before.v, after.v, t), out),
+        ]
     };
     let ring = ring(|t| {
         let [u, v] = at(t);

@@ -166,7 +166,8 @@ impl Reader<'_> {
         let points: usize = loops.iter().map(|ring| ring.edges.len()).sum();
         self.records.spend(points.saturating_mul(swept.curve.points().len()), base)?;
         let (paths, outer) = self.paths(&places, loops).map_err(|text| face.fail(text))?;
-        if outer.is_none() && (!swept.is_turned() || !loops.is_empty() || !swept.curve.is_closed()) {
+        if outer.is_none() && (!swept.is_turned() || !loops.is_empty() || !swept.curve.is_closed())
+        {
             return Err(face.fail("no loop bounds the surface"));
         }
         let range = match (swept.way, outer.map(|i| &paths[i])) {

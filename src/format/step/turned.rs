@@ -69,7 +69,11 @@ impl Turned {
 
     /// Where the loops of a face run; `None` if a pole lies inside an edge, or a loop does not come
     /// back to where it starts.
-    fn paths(&self, reader: &Reader, loops: &[Ring]) -> Result<(Vec<Path>, Option<usize>), &'static str> {
+    fn paths(
+        &self,
+        reader: &Reader,
+        loops: &[Ring],
+    ) -> Result<(Vec<Path>, Option<usize>), &'static str> {
         let round = self.is_tube().then_some(TAU);
         let places = Places {
             of: &|p| self.place(p),
@@ -169,7 +173,8 @@ impl Reader<'_> {
             let trail = |&edge: &Use| (edge.id, self.samples(edge, SAMPLES));
             let trails: Vec<_> = ring.edges.iter().map(trail).collect();
             let path = Path::along(places, ring, &trails);
-            let path = path.ok_or("an edge runs through a pole between its vertices, which is not read")?;
+            let path =
+                path.ok_or("an edge runs through a pole between its vertices, which is not read")?;
             if !path.is_closed() {
                 return Err("a loop goes around the surface without a seam, which is not read");
             }
