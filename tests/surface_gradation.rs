@@ -1,10 +1,11 @@
 //! Spacings on surfaces by the user's own function.
 
 use trigrade::curve::Curve;
+use trigrade::curve::discretize::Rule;
 use trigrade::mesher::{Gradation, Unobserved};
-use trigrade::model::{Model, Patch};
+use trigrade::model::{Model, ModelCurve, Patch};
 use trigrade::size::Expression;
-use trigrade::surface::{Revolution, Surface, Tensor};
+use trigrade::surface::{Revolution, Side, Surface, Tensor};
 use trigrade::surface_mesher::{SurfaceMeshError, SurfaceMeshed, SurfaceOptions, mesh_model};
 use trigrade::vector::distance;
 
@@ -98,4 +99,34 @@ fn what_is_no_spacing_or_no_variable_of_surfaces_is_refused() {
     assert!(told("z - 0.5").contains("a spacing must be positive"), "{}", told("z - 0.5"));
     assert!(told("1/(x - x)").contains("inf at"));
     assert!(told("0.1 + L1").contains("column 7: `L1` has a meaning in plane domains only"));
+}
+
+// spec: S36
+#[test]
+fn uniform_takes_the_spacing_inside_whatever_the_edges_of_the_curves() {
+    let square = [vec![[0.0; 3], [0.0, 1.0, 0.0]], vec![[1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]];
+    let mut model = model(Surface::Tensor(Tensor::bezier(&square).expect("a square")));
+    model.curves.push(ModelCurve {
+        name: "south".to_owned(),
+        curve: model.patches[0].surface.side(Side::South),
+        rule: Some(Rule::Spacing(0.02)),
+        marker: None,
+    });
+    let count = |gradation: Gradation| {
+        let mut options = SurfaceOptions::default();
+        options.common.spacing = Some(0.1);
+        options.common.gradation = gradation;
+        mesh_model(&model, &options, &mut Unobserved).map(|meshed| meshed.mesh.triangles.len())
+    };
+    let (grown, uniform) = (count(Gradation::Growth), count(Gradation::Uniform));
+    let (grown, uniform) = (grown.expect("a mesh"), uniform.expect("a mesh"));
+    assert!(3 * uniform < 2 * grown, "{uniform} against {grown}");
+    for (gradation, name) in [(Gradation::Mean, "mean"), (Gradation::Third, "third")] {
+        let error = count(gradation).expect_err("of the plane");
+        assert_eq!(error, SurfaceMeshError::PlaneGradation(name));
+        assert!(
+            error.to_string().contains(name) && error.to_string().contains("growth"),
+            "{error}"
+        );
+    }
 }

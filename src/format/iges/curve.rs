@@ -151,9 +151,9 @@ pub(super) fn uniform(weights: Vec<f64>) -> Vec<f64> {
     if alike { Vec::new() } else { weights }
 }
 
-/// The range of parameters to be used, unless it is all of them up to the digits of the file.
+/// The range of parameters to be used, unless it is all of them: what lies beyond them says nothing,
+/// what lies inside is taken to the bit.
 pub(super) fn used(range: [f64; 2], domain: [f64; 2]) -> Option<[f64; 2]> {
-    let slack = 1e-9 * (domain[1] - domain[0]);
-    let all = (0..2).all(|i| (range[i] - domain[i]).abs() <= slack);
-    (!all).then_some(range)
+    let clipped = [range[0].max(domain[0]), range[1].min(domain[1])];
+    (clipped != domain).then_some(clipped)
 }
