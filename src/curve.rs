@@ -10,7 +10,7 @@ pub mod cut;
 pub mod discretize;
 
 use crate::vector::{Vector, add, along, key, scale, sub};
-use basis::{Basis, DEGREE_MAX};
+use basis::{Basis, DEGREE_MAX, NARROW, Table, WIDTH};
 
 /// A curve.
 ///
@@ -34,6 +34,7 @@ pub struct Curve {
     points: Vec<Vector>,
     weights: Vec<f64>,
     closed: bool,
+    table: Table,
 }
 
 /// A point of a curve with the derivatives there.
@@ -139,7 +140,8 @@ impl Curve {
     ) -> Result<Self, CurveError> {
         check_knots(degree, &knots, points.len())?;
         check_points(&points, &weights)?;
-        let mut curve = Self { degree, knots, points, weights, closed: false };
+        let table = Table::new(&knots, degree, points.len());
+        let mut curve = Self { degree, knots, points, weights, closed: false, table };
         let [start, end] = curve.domain();
         curve.closed = key(curve.at(start)) == key(curve.at(end)) && !curve.is_point();
         Ok(curve)
@@ -238,7 +240,7 @@ impl Curve {
     pub fn at(&self, t: f64) -> Vector {
         let [start, end] = self.domain();
         let t = if self.closed && t >= end { start } else { t.clamp(start, end) };
-        let basis = self.basis::<1>(t);
+        let basis = self.basis::<1, WIDTH>(t);
         if let Some(i) = basis.rows[0][..=self.degree].iter().position(|&n| n == 1.0) {
             // No weight may disturb a point that is a control point.
             return self.points[basis.first + i];
@@ -250,8 +252,7 @@ impl Curve {
     #[must_use]
     pub fn jet(&self, t: f64) -> CurveJet {
         let [start, end] = self.domain();
-        let t = t.clamp(start, end);
-        self.sums(&self.basis::<3>(t)).jet()
+        self.all_sums::<3>(t.clamp(start, end)).jet()
     }
 
     /// The point at parameter `t` and the first derivative, from the right where it jumps: the same
@@ -259,13 +260,22 @@ impl Curve {
     #[must_use]
     pub fn tangent(&self, t: f64) -> [Vector; 2] {
         let [start, end] = self.domain();
-        let sums = self.sums(&self.basis::<2>(t.clamp(start, end)));
+        let sums = self.all_sums::<2>(t.clamp(start, end));
         let point = sums.point();
         [point, sums.first(point)]
     }
 
     #[inline]
-    fn basis<const N: usize>(&self, t: f64) -> Basis<N> {
+    fn all_sums<const N: usize>(&self, t: f64) -> Sums<N> {
+        match self.table.at::<N>(t) {
+            Some(basis) => self.sums(&basis),
+            None if self.degree < NARROW => self.sums(&self.basis::<N, NARROW>(t)),
+            None => self.sums(&self.basis::<N, WIDTH>(t)),
+        }
+    }
+
+    #[inline]
+    fn basis<const N: usize, const W: usize>(&self, t: f64) -> Basis<N, W> {
         Basis::at(&self.knots, self.degree, self.points.len(), t)
     }
 
@@ -283,6 +293,7 @@ impl Curve {
         curve.points.reverse();
         curve.weights.reverse();
         curve.knots = self.knots.iter().rev().map(|&knot| start + (end - knot)).collect();
+        curve.table = Table::new(&curve.knots, curve.degree, curve.points.len());
         curve
     }
 
@@ -337,21 +348,28 @@ impl Curve {
         let weights =
             if self.weights.is_empty() { Vec::new() } else { self.weights[from..=to].to_vec() };
         let points = self.points[from..=to].to_vec();
-        let mut piece = Self {
-            degree: self.degree,
-            knots: piece_knots(&self.knots, self.degree, from, to),
-            points,
-            weights,
-            closed: false,
-        };
+        let knots = piece_knots(&self.knots, self.degree, from, to);
+        let table = Table::new(&knots, self.degree, points.len());
+        let mut piece = Self { degree: self.degree, knots, points, weights, closed: false, table };
         let [start, end] = piece.ends();
         piece.closed = key(start) == key(end) && !piece.is_point();
         piece
     }
 
     #[inline]
-    fn sums<const N: usize>(&self, basis: &Basis<N>) -> Sums<N> {
+    fn sums<const N: usize, const W: usize>(&self, basis: &Basis<N, W>) -> Sums<N> {
         let mut sums = Sums { points: [[0.0; 3]; N], weights: [0.0; N] };
+        if self.weights.is_empty() {
+            let points = &self.points[basis.first..=basis.first + self.degree];
+            for (r, &point) in points.iter().enumerate() {
+                for order in 0..N {
+                    sums.points[order] = along(sums.points[order], basis.rows[order][r], point);
+                }
+            }
+            // Their sum is 1 but for rounding, and the sum of the slopes 0.
+            sums.weights[0] = 1.0;
+            return sums;
+        }
         for r in 0..=self.degree {
             let (point, weight) = (self.points[basis.first + r], self.weight(basis.first + r));
             for order in 0..N {

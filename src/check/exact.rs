@@ -221,13 +221,18 @@ pub fn orient3d(a: P3, b: P3, c: P3, d: P3) -> Ordering {
 /// [`orient3d`] for integer coordinates, given by axis, whose differences stay below 2^62.
 #[must_use]
 pub fn orient3d_narrow(axes: [[i64; 4]; 3]) -> Ordering {
+    determinant_narrow(axes).sign()
+}
+
+/// The determinant whose sign is that of [`orient3d`], for integers as in [`orient3d_narrow`].
+#[must_use]
+pub fn determinant_narrow(axes: [[i64; 4]; 3]) -> Int256 {
     let [x, y, z] =
         axes.map(|[a, b, c, d]| [i128::from(b - a), i128::from(c - a), i128::from(d - a)]);
     let minor = |p: [i128; 3], q: [i128; 3]| p[0] * q[1] - p[1] * q[0];
-    let sum = Int256::product(minor(y, z), x[2])
+    Int256::product(minor(y, z), x[2])
         .plus(Int256::product(minor(z, x), y[2]))
-        .plus(Int256::product(minor(x, y), z[2]));
-    sum.sign()
+        .plus(Int256::product(minor(x, y), z[2]))
 }
 
 fn orient3d_wide(axes: &[[Wide; 4]; 3]) -> Ordering {

@@ -14,7 +14,6 @@ use crate::mesh::MeshData;
 use crate::model::Model;
 use complex::{Boundary, Complex};
 use foot::{Measured, ROUNDING, Sheets};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -110,8 +109,7 @@ fn measure(
         report.normal_deviation_deg = report.normal_deviation_deg.max(found.turn_deg());
     }
     let edges = undirected(mesh);
-    let used: BTreeSet<u32> = mesh.triangles.iter().flatten().copied().collect();
-    report.euler = used.len() as i64 - edges.len() as i64 + mesh.triangles.len() as i64;
+    report.euler = used(mesh) as i64 - edges.len() as i64 + mesh.triangles.len() as i64;
     let boundary: Vec<[u32; 2]> =
         edges.iter().filter(|(_, count)| *count == 1).map(|(edge, _)| *edge).collect();
     report.boundary_edges = boundary.len();
@@ -209,18 +207,46 @@ fn find_boundary(ends: &Boundary<'_>, boundary: &[[u32; 2]], (mesh, out): Finder
     }
 }
 
-/// Edges with the number of triangles at each; those of points that do not exist are left out.
+/// How many vertices the triangles name, those that do not exist too.
+fn used(mesh: &MeshData) -> usize {
+    let mut is_used = vec![false; mesh.points.len()];
+    let mut missing = BTreeSet::new();
+    for &v in mesh.triangles.iter().flatten() {
+        match is_used.get_mut(v as usize) {
+            Some(slot) => *slot = true,
+            None => drop(missing.insert(v)),
+        }
+    }
+    is_used.into_iter().filter(|&used| used).count() + missing.len()
+}
+
+/// Edges with the number of triangles at each, sorted; those of points that do not exist are left out.
+///
+/// Upper ends are counted into buckets by their lower ends and sorted within.
 fn undirected(mesh: &MeshData) -> Vec<([u32; 2], usize)> {
-    let exists = |edge: &[u32; 2]| (edge[1] as usize) < mesh.points.len();
-    let mut all: Vec<[u32; 2]> = mesh
-        .triangles
-        .par_iter()
-        .flat_map_iter(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-        .map(|[a, b]| [a.min(b), a.max(b)])
-        .filter(exists)
-        .collect();
-    all.par_sort_unstable();
-    all.chunk_by(|a, b| a == b).map(|run| (run[0], run.len())).collect()
+    let sides = || {
+        let around = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+        let ends = mesh.triangles.iter().flat_map(around).map(|[a, b]| [a.min(b), a.max(b)]);
+        ends.filter(|edge| (edge[1] as usize) < mesh.points.len())
+    };
+    let mut starts = vec![0_usize; mesh.points.len() + 1];
+    sides().for_each(|[low, _]| starts[low as usize + 1] += 1);
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut upper = vec![0; starts[mesh.points.len()]];
+    let mut next = starts.clone();
+    for [low, high] in sides() {
+        upper[next[low as usize]] = high;
+        next[low as usize] += 1;
+    }
+    let mut edges = Vec::with_capacity(upper.len() / 2 + 1);
+    for (low, ends) in (0..).zip(starts.windows(2)) {
+        let bucket = &mut upper[ends[0]..ends[1]];
+        bucket.sort_unstable();
+        edges.extend(bucket.chunk_by(|a, b| a == b).map(|run| ([low, run[0]], run.len())));
+    }
+    edges
 }
 
 impl Report {

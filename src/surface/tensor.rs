@@ -3,7 +3,7 @@
 mod cut;
 
 use super::{Side, SurfaceError, SurfaceJet, Tangents};
-use crate::curve::basis::Basis;
+use crate::curve::basis::{Basis, NARROW, Table, WIDTH};
 use crate::curve::{
     Curve, CurveError, check_knots, check_points, clamped_knots, cuts, piece_knots,
 };
@@ -17,6 +17,7 @@ use crate::vector::{Vector, along, scale, sub};
 pub struct Tensor {
     degrees: [usize; 2],
     knots: [Vec<f64>; 2],
+    tables: [Table; 2],
     counts: [usize; 2],
     net: Vec<Vector>,
     weights: Vec<f64>,
@@ -66,7 +67,8 @@ impl Tensor {
         let (net, weights) = (rows.concat(), weights.concat());
         check_points(&net, &weights)
             .map_err(|error| SurfaceError::Spline { direction: 'u', error })?;
-        Ok(Self { degrees, knots, counts, net, weights, is_joined: false })
+        let tables = tables(&knots, degrees, counts);
+        Ok(Self { degrees, knots, tables, counts, net, weights, is_joined: false })
     }
 
     /// The Bezier patch of a control net: degrees by the size of the net, parameters from 0 to 1.
@@ -99,15 +101,18 @@ impl Tensor {
     }
 
     pub(super) fn at(&self, u: f64, v: f64) -> Vector {
-        self.sums::<1>(u, v)[0][0].point()
+        self.all_sums::<1>(u, v)[0][0].point()
     }
 
     pub(super) fn tangents(&self, u: f64, v: f64) -> Tangents {
-        tangents(&self.sums::<2>(u, v))
+        match self.is_narrow() && self.weights.is_empty() {
+            true => self.plain_tangents(u, v),
+            false => tangents(&self.all_sums::<2>(u, v)),
+        }
     }
 
     pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
-        let sums = self.sums::<3>(u, v);
+        let sums = self.all_sums::<3>(u, v);
         let first = tangents(&sums);
         let Tangents { point, u: du, v: dv } = first;
         let weight = sums[0][0].weight;
@@ -125,9 +130,42 @@ impl Tensor {
         }
     }
 
+    /// Whether the basis functions fit a narrow array.
+    fn is_narrow(&self) -> bool {
+        self.degrees.iter().all(|&degree| degree < NARROW)
+    }
+
+    /// Point and tangents where the degrees are low and all weights are 1: the usual case.
+    fn plain_tangents(&self, u: f64, v: f64) -> Tangents {
+        let (u, v) = (self.narrow_basis::<2>(0, u), self.narrow_basis::<2>(1, v));
+        let mut sums = Tangents { point: [0.0; 3], u: [0.0; 3], v: [0.0; 3] };
+        for r in 0..=self.degrees[0] {
+            let start = (u.first + r) * self.counts[1] + v.first;
+            let (mut row, mut slope) = ([0.0; 3], [0.0; 3]);
+            for (s, &control) in self.net[start..=start + self.degrees[1]].iter().enumerate() {
+                row = along(row, v.rows[0][s], control);
+                slope = along(slope, v.rows[1][s], control);
+            }
+            sums.point = along(sums.point, u.rows[0][r], row);
+            sums.u = along(sums.u, u.rows[1][r], row);
+            sums.v = along(sums.v, u.rows[0][r], slope);
+        }
+        sums
+    }
+
     /// Sums for orders of derivatives by u and by v that are together below N.
-    fn sums<const N: usize>(&self, u: f64, v: f64) -> [[Sum; N]; N] {
-        let (u, v) = (self.basis::<N>(0, u), self.basis::<N>(1, v));
+    fn all_sums<const N: usize>(&self, u: f64, v: f64) -> [[Sum; N]; N] {
+        match self.is_narrow() {
+            true => self.sums(&self.narrow_basis::<N>(0, u), &self.narrow_basis::<N>(1, v)),
+            false => self.sums(&self.basis::<N, WIDTH>(0, u), &self.basis::<N, WIDTH>(1, v)),
+        }
+    }
+
+    fn sums<const N: usize, const W: usize>(
+        &self,
+        u: &Basis<N, W>,
+        v: &Basis<N, W>,
+    ) -> [[Sum; N]; N] {
         let mut sums = [[Sum::default(); N]; N];
         for r in 0..=self.degrees[0] {
             let mut row = [Sum::default(); N];
@@ -149,7 +187,12 @@ impl Tensor {
     }
 
     #[inline]
-    fn basis<const N: usize>(&self, direction: usize, t: f64) -> Basis<N> {
+    fn narrow_basis<const N: usize>(&self, direction: usize, t: f64) -> Basis<N, NARROW> {
+        self.tables[direction].at(t).unwrap_or_else(|| self.basis(direction, t))
+    }
+
+    #[inline]
+    fn basis<const N: usize, const W: usize>(&self, direction: usize, t: f64) -> Basis<N, W> {
         let (degree, count) = (self.degrees[direction], self.counts[direction]);
         let knots = &self.knots[direction];
         Basis::at(knots, degree, count, t.clamp(knots[degree], knots[count]))
@@ -196,18 +239,18 @@ impl Tensor {
             .flat_map(|i| (columns[0]..=columns[1]).map(move |j| i * self.counts[1] + j));
         let net = indices.clone().map(|k| self.net[k]).collect();
         let weights = indices.filter_map(|k| self.weights.get(k).copied()).collect();
-        Self {
-            degrees: self.degrees,
-            knots: [
-                piece_knots(&self.knots[0], self.degrees[0], rows[0], rows[1]),
-                piece_knots(&self.knots[1], self.degrees[1], columns[0], columns[1]),
-            ],
-            counts: [rows[1] - rows[0] + 1, columns[1] - columns[0] + 1],
-            net,
-            weights,
-            is_joined: false,
-        }
+        let knots = [
+            piece_knots(&self.knots[0], self.degrees[0], rows[0], rows[1]),
+            piece_knots(&self.knots[1], self.degrees[1], columns[0], columns[1]),
+        ];
+        let counts = [rows[1] - rows[0] + 1, columns[1] - columns[0] + 1];
+        let (degrees, tables) = (self.degrees, tables(&knots, self.degrees, counts));
+        Self { degrees, knots, tables, counts, net, weights, is_joined: false }
     }
+}
+
+fn tables(knots: &[Vec<f64>; 2], degrees: [usize; 2], counts: [usize; 2]) -> [Table; 2] {
+    [0, 1].map(|i| Table::new(&knots[i], degrees[i], counts[i]))
 }
 
 impl Sum {

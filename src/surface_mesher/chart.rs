@@ -16,13 +16,20 @@ use crate::vector::{self, Vector, along, cross, dot, norm_sq, scale, sub};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lift {
     pub(super) point: Vector,
-    /// First fundamental form in scaled parameters.
-    pub(super) form: FirstForm,
+    /// Derivatives by the scaled parameters.
+    pub(super) u: Vector,
+    pub(super) v: Vector,
     /// The unit normal; 0 where there is none.
     pub(super) normal: Vector,
 }
 
 impl Lift {
+    /// First fundamental form in scaled parameters.
+    pub(super) fn form(&self) -> FirstForm {
+        let Self { point, u, v, .. } = *self;
+        FirstForm::new(&Tangents { point, u, v })
+    }
+
     /// Whether the map is singular there.
     pub(super) fn is_pole(&self) -> bool {
         self.normal == [0.0; 3]
@@ -86,7 +93,8 @@ impl<'a> Sheet<'a> {
 
 pub(super) fn lift(tangents: &Tangents) -> Lift {
     let normal = vector::unit(cross(tangents.u, tangents.v)).unwrap_or_default();
-    Lift { point: tangents.point, form: FirstForm::new(tangents), normal }
+    let Tangents { point, u, v } = *tangents;
+    Lift { point, u, v, normal }
 }
 
 /// The power of two nearest to `x`; 1 when `x` is no length.
@@ -268,7 +276,7 @@ impl Chart for SurfaceChart<'_> {
     }
 
     fn circle(&self, p: Site<Lift>) -> Matrix2 {
-        Matrix2::root(&p.lift.form)
+        Matrix2::root(&p.lift.form())
     }
 
     fn circle_at(&self, frame: &Frame) -> Matrix2 {

@@ -17,7 +17,7 @@ pub(super) fn towards_circles(mesh: &mut Triangulation, points: &[Point2], lifts
     let mut suspects = all_edges(mesh);
     while let Some(e) = suspects.pop() {
         let Some(vertices) = around(mesh, e) else { continue };
-        let [a, b] = [vertices[0], vertices[1]].map(|v| lifts[v].form);
+        let [a, b] = [vertices[0], vertices[1]].map(|v| lifts[v].form());
         let mean = FirstForm { e: a.e + b.e, f: a.f + b.f, g: a.g + b.g };
         let circle = Matrix2::root(&mean);
         let quad = vertices.map(|v| points[v]);

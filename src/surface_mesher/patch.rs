@@ -81,8 +81,8 @@ impl<'a> Draft<'a> {
 
     /// The spacing that asks for as many triangles in the plane of (u, v) as are wanted in space.
     fn flat_spacing(&self, p: Point2) -> f64 {
-        let Lift { point, form, .. } = self.chart.sheet.lift(p);
-        self.chart.spacing_at(p, point) / form.area().sqrt()
+        let lift = self.chart.sheet.lift(p);
+        self.chart.spacing_at(p, lift.point) / lift.form().area().sqrt()
     }
 
     /// Lays and improves the triangles.

@@ -52,9 +52,13 @@ impl<'a> Smoother<'a> {
     /// Flips and sweeps where there is something to look at; returns the numbers of flips and moves.
     pub(super) fn settle(&mut self, cloth: &mut Cloth<'_>, sweeps: u32) -> [u64; 2] {
         let (mut flips, mut moves) = (0, 0);
+        let mut outgoing = None;
         for _ in 0..sweeps {
-            flips += self.flip(cloth);
-            let moved = self.sweep(cloth.mesh, cloth.points, cloth.lifts);
+            let flipped = self.flip(cloth);
+            flips += flipped;
+            outgoing = outgoing.filter(|_| flipped == 0);
+            let outgoing = outgoing.get_or_insert_with(|| cloth.mesh.outgoing(cloth.points.len()));
+            let moved = self.sweep(cloth.mesh, outgoing, (cloth.points, cloth.lifts));
             moves += moved;
             if moved == 0 {
                 break;
@@ -69,8 +73,12 @@ impl<'a> Smoother<'a> {
     }
 
     /// One sweep over the active vertices in index order; returns the number of moves.
-    fn sweep(&mut self, mesh: &Triangulation, points: &mut [Point2], lifts: &mut [Lift]) -> u64 {
-        let outgoing = mesh.outgoing(points.len());
+    fn sweep(
+        &mut self,
+        mesh: &Triangulation,
+        outgoing: &[Option<HalfEdgeId>],
+        (points, lifts): (&mut [Point2], &mut [Lift]),
+    ) -> u64 {
         let mut moves = 0;
         for v in self.fixed..points.len() {
             if !std::mem::take(&mut self.active[v]) {
@@ -118,20 +126,21 @@ impl<'a> Smoother<'a> {
 
     /// A place that is better in space and valid in (u, v), if a step finds one.
     fn better_place(&mut self, v: Point2, above: &Lift) -> Option<(Point2, Lift)> {
-        let tangents = self.chart.sheet.tangents(v);
-        let normal = unit(cross(tangents.u, tangents.v))?;
-        let x = unit(tangents.u)?;
-        let y = cross(normal, x);
+        if above.is_pole() {
+            return None;
+        }
+        let x = unit(above.u)?;
+        let y = cross(above.normal, x);
         self.flat.clear();
         self.flat.extend(self.link.iter().map(|&(_, q)| {
             let arm = sub(q, above.point);
             Point2::new(dot(x, arm), dot(y, arm))
         }));
         let [mut dx, mut dy] = newton_step(&self.flat)?;
-        let (now, worst_now) = self.energy(above.point, normal);
+        let mut before = None;
         let reach_sq = self.flat[0].x * self.flat[0].x + self.flat[0].y * self.flat[0].y;
         // Along x lies X_u alone: the map from parameters to the plane is triangular.
-        let (xu, xv, yv) = (dot(x, tangents.u), dot(x, tangents.v), dot(y, tangents.v));
+        let (xu, xv, yv) = (dot(x, above.u), dot(x, above.v), dot(y, above.v));
         for _ in 0..TRIES {
             if dx * dx + dy * dy < STEP_MIN * STEP_MIN * reach_sq {
                 return None;
@@ -140,8 +149,9 @@ impl<'a> Smoother<'a> {
             let place = Point2::new(v.x + (dx - xv * dv) / xu, v.y + dv);
             if place.is_finite() && self.is_valid(place) {
                 let there = self.chart.sheet.tangents(place);
-                let normal = unit(cross(there.u, there.v))?;
-                let (then, worst_then) = self.energy(there.point, normal);
+                let (now, worst_now) =
+                    *before.get_or_insert_with(|| self.energy(above.point, above.normal));
+                let (then, worst_then) = self.energy(there.point, cross(there.u, there.v));
                 if then < now && worst_then <= worst_now {
                     return Some((place, lift(&there)));
                 }
@@ -151,21 +161,29 @@ impl<'a> Smoother<'a> {
         None
     }
 
-    /// Sum of squares and largest of the inverse mean ratios in space; infinite when a triangle
-    /// faces away from the normal.
+    /// Sum and largest of the squared inverse mean ratios in space; infinite when a triangle faces
+    /// away from the normal, whatever its length.
     fn energy(&self, v: Vector, normal: Vector) -> (f64, f64) {
         let (mut sum, mut worst) = (0.0, 0.0_f64);
-        for i in 0..self.link.len() {
-            let (u, w) = (self.link[i].1, self.link[(i + 1) % self.link.len()].1);
-            if u == w {
-                continue;
+        let last = self.link[self.link.len() - 1].1;
+        let (mut u, mut a) = (last, sub(last, v));
+        let mut a_sq = norm_sq(a);
+        for &(_, w) in &self.link {
+            let b = sub(w, v);
+            let b_sq = norm_sq(b);
+            if u != w {
+                // Half the sum of the squared sides.
+                let q = a_sq + b_sq - dot(a, b);
+                let area = cross(a, b);
+                let f_sq = if dot(area, normal) > 0.0 {
+                    4.0 * q * q / norm_sq(area)
+                } else {
+                    f64::INFINITY
+                };
+                sum += f_sq;
+                worst = worst.max(f_sq);
             }
-            let (a, b) = (sub(u, v), sub(w, v));
-            let q = norm_sq(a) + norm_sq(b) + norm_sq(sub(w, u));
-            let area = cross(a, b);
-            let f = if dot(area, normal) > 0.0 { q / norm_sq(area).sqrt() } else { f64::INFINITY };
-            sum += f * f;
-            worst = worst.max(f);
+            (u, a, a_sq) = (w, b, b_sq);
         }
         (sum, worst)
     }
@@ -185,19 +203,22 @@ impl<'a> Smoother<'a> {
 /// edge turned a quarter, grad q = -2 (u + w), and the second derivatives are 4 for q and 0 for a.
 fn newton_step(flat: &[Point2]) -> Option<[f64; 2]> {
     let (mut gradient, mut hessian) = ([0.0; 2], [0.0; 3]);
-    for (i, &u) in flat.iter().enumerate() {
-        let w = flat[(i + 1) % flat.len()];
-        if u == w {
+    let mut u = *flat.last()?;
+    for &w in flat {
+        let from = std::mem::replace(&mut u, w);
+        if from == w {
             continue;
         }
+        let u = from;
         let (ex, ey) = (w.x - u.x, w.y - u.y);
         let q = u.x * u.x + u.y * u.y + w.x * w.x + w.y * w.y + ex * ex + ey * ey;
-        let a = u.x * w.y - u.y * w.x;
-        let f = q / a;
+        let per_a = 1.0 / (u.x * w.y - u.y * w.x);
+        let f = q * per_a;
         let (ax, ay) = (-ey, ex);
-        let (gx, gy) = ((-2.0 * (u.x + w.x) - f * ax) / a, (-2.0 * (u.y + w.y) - f * ay) / a);
-        let (hxx, hyy) = ((4.0 - 2.0 * gx * ax) / a, (4.0 - 2.0 * gy * ay) / a);
-        let hxy = -(gx * ay + gy * ax) / a;
+        let gx = (-2.0 * (u.x + w.x) - f * ax) * per_a;
+        let gy = (-2.0 * (u.y + w.y) - f * ay) * per_a;
+        let (hxx, hyy) = ((4.0 - 2.0 * gx * ax) * per_a, (4.0 - 2.0 * gy * ay) * per_a);
+        let hxy = -(gx * ay + gy * ax) * per_a;
         gradient[0] += f * gx;
         gradient[1] += f * gy;
         hessian[0] += gx * gx + f * hxx;

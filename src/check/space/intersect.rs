@@ -1,8 +1,15 @@
 //! Exact intersection of triangles in space, by signs of orient3d and, in a common plane, orient2d.
+//!
+//! Most triangles whose boxes meet are neighbours, and a line that separates their projections along
+//! an axis proves at once that they do not meet improperly. Coordinates are rounded down to the lattice
+//! for that, with a bound in integers on what this may change: a sign counts where it is certain.
 
 use crate::check::exact::{self, P3, orient2d};
 use crate::check::lattice::Lattice;
+use crate::check::ldexp;
+use crate::check::wide::Int256;
 use crate::mesh::MeshData;
+use crate::vector::{cross, sub};
 use rayon::prelude::*;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
@@ -10,14 +17,53 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 pub(super) struct Space<'a> {
     mesh: &'a MeshData,
     lattice: Lattice<3>,
+    /// Coordinates in units of the lattice, towards 0: each is less than 1 off, and below 2^61.
+    rounded: Vec<[i64; 3]>,
 }
+
+/// No determinant of two rows of rounded coordinates is farther from the true one. Differences, true
+/// or rounded, are below 2^62 and 2 apart: |a b - a' b'| <= |a| |b - b'| + |b'| |a - a'| < 2^64, twice.
+const OFF_IN_PLANE: i128 = 1 << 65;
+/// The root of the same for three rows: six products are each off by at most
+/// (m + 2)^3 - m^3 = 6 m^2 + 12 m + 8 for differences up to m < 2^62, together less than 2^130.
+const OFF_IN_SPACE_ROOT: i128 = 1 << 65;
 
 /// Triangles per piece of parallel work.
 const CHUNK: usize = 1 << 14;
 
 impl<'a> Space<'a> {
     pub(super) fn new(mesh: &'a MeshData) -> Self {
-        Self { mesh, lattice: Lattice::of(&mesh.points) }
+        let lattice = Lattice::of(&mesh.points);
+        #[expect(clippy::cast_possible_truncation, reason = "this is how it is rounded")]
+        let round = |p: &P3| p.map(|x| ldexp(x, -lattice.exponent) as i64);
+        let rounded = mesh.points.par_iter().with_min_len(CHUNK).map(round).collect();
+        Self { mesh, lattice, rounded }
+    }
+
+    /// The sign of the area of a triangle's projection along an axis, if that is certain from rounded
+    /// coordinates; else `Equal`.
+    #[inline]
+    fn clear_turn(&self, axis: usize, corners: [u32; 3]) -> Ordering {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b, c] = corners.map(|v| self.rounded[v as usize]);
+        let determinant = exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]);
+        match determinant {
+            d if d > OFF_IN_PLANE => Greater,
+            d if d < -OFF_IN_PLANE => Less,
+            _ => Equal,
+        }
+    }
+
+    /// The sign of orient3d, if it is certain from rounded coordinates; else `Equal`.
+    fn clear_orient(&self, corners: [u32; 4]) -> Ordering {
+        let [a, b, c, d] = corners.map(|v| self.rounded[v as usize]);
+        let determinant = exact::determinant_narrow([0, 1, 2].map(|k| [a[k], b[k], c[k], d[k]]));
+        let off = Int256::product(OFF_IN_SPACE_ROOT, OFF_IN_SPACE_ROOT);
+        match (determinant.minus(off).sign(), determinant.plus(off).sign()) {
+            (Greater, _) => Greater,
+            (_, Less) => Less,
+            _ => Equal,
+        }
     }
 
     pub(super) fn point(&self, v: u32) -> P3 {
@@ -30,10 +76,10 @@ impl<'a> Space<'a> {
             Some([a, b, c, d]) => {
                 exact::orient3d_narrow([0, 1, 2].map(|k| [a[k], b[k], c[k], d[k]]))
             }
-            None => {
+            None => self.clear_orient(corners).then_with(|| {
                 let [a, b, c, d] = corners.map(|v| self.point(v));
                 exact::orient3d(a, b, c, d)
-            }
+            }),
         }
     }
 
@@ -42,10 +88,10 @@ impl<'a> Space<'a> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         match self.lattice.points(corners) {
             Some([a, b, c]) => exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]).cmp(&0),
-            None => {
+            None => self.clear_turn(axis, corners).then_with(|| {
                 let [a, b, c] = corners.map(|v| self.point(v)).map(|p| [p[i], p[j]]);
                 orient2d(a, b, c)
-            }
+            }),
         }
     }
 
@@ -67,11 +113,47 @@ impl<'a> Space<'a> {
     /// Whether two triangles with area meet in more than their common corners and edge.
     pub(super) fn meet_improperly(&self, mut s: [u32; 3], mut t: [u32; 3]) -> bool {
         let common = bring_common_first(&mut s, &mut t);
+        if self.are_beside(self.facing_axis(s), (s, t), common) {
+            return false;
+        }
         match common {
             0 => self.disjoint_corners_meet(s, t),
             1 => self.meet_beyond_corner(s, t),
             2 => self.overlap_along_edge(s, t),
             _ => true,
+        }
+    }
+
+    /// The axis along which a triangle's projection is largest, up to rounding.
+    fn facing_axis(&self, corners: [u32; 3]) -> usize {
+        let [a, b, c] = corners.map(|v| self.point(v));
+        let normal = cross(sub(b, a), sub(c, a)).map(f64::abs);
+        let larger = usize::from(normal[1] > normal[0]);
+        if normal[2] > normal[larger] { 2 } else { larger }
+    }
+
+    /// Whether the projections of two triangles along an axis show that they meet in their common
+    /// corners, the first of both, alone: a line has all other corners of one strictly on one side,
+    /// and no corner of the other on that side. It runs along an edge of one of them, through the
+    /// common corners. The plane above it meets the first triangle in the common corners or edge.
+    fn are_beside(&self, axis: usize, (s, t): ([u32; 3], [u32; 3]), common: usize) -> bool {
+        let parts = |line: [u32; 2], own: u32, others: &[u32]| {
+            let side = self.clear_turn(axis, [line[0], line[1], own]).reverse();
+            let is_across = |&v: &u32| self.clear_turn(axis, [line[0], line[1], v]) == side;
+            side.is_ne() && others.iter().all(is_across)
+        };
+        match common {
+            0 => [(s, t), (t, s)]
+                .iter()
+                .any(|(s, t)| (0..3).any(|i| parts([s[i], s[(i + 1) % 3]], s[(i + 2) % 3], t))),
+            1 => {
+                parts([s[0], s[1]], s[2], &t[1..])
+                    || parts([s[0], s[2]], s[1], &t[1..])
+                    || parts([t[0], t[1]], t[2], &s[1..])
+                    || parts([t[0], t[2]], t[1], &s[1..])
+            }
+            2 => parts([s[0], s[1]], s[2], &t[2..]),
+            _ => false,
         }
     }
 
@@ -256,6 +338,72 @@ mod tests {
         assert!(meet(&with(&[[1.0, 1.0, 0.0], [1.0, 2.0, 1.0]]), t));
         assert!(meet(&with(&[[2.0, 1.0, 0.0], [1.0, 2.0, 0.0]]), t));
         assert!(meet(&with(&[[8.0, 0.0, 0.0], [8.0, -1.0, 0.0]]), t));
+    }
+
+    // spec: C71
+    #[test]
+    fn rounded_signs_are_right_where_they_are_certain() {
+        // Coordinates with bits far below the lattice, flat and nearly flat triangles among them.
+        let step = |k: u32| f64::from(k.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
+        let tiny = |k: u32| 1e-24 * step(k);
+        let points: Vec<P3> = (0..400)
+            .map(|k| {
+                let (x, y) = (step(3 * k), step(3 * k + 1));
+                let z = if k % 3 == 0 { x + y } else { step(3 * k + 2) };
+                [x + tiny(k), y - tiny(k + 7), z + tiny(k + 3)]
+            })
+            .chain((0..40).map(|k| [f64::from(k % 5) + tiny(k), f64::from(k / 5), tiny(k + 1)]))
+            .collect();
+        let mesh = MeshData { points, ..MeshData::default() };
+        let space = Space::new(&mesh);
+        let (mut clear, mut unclear) = (0, 0);
+        for k in 0..4000_u32 {
+            let pick = |i: u32| (k.wrapping_mul(31).wrapping_add(i * 97 + i * i * k)) % 440;
+            let corners = [pick(0), pick(1), pick(2), pick(3)];
+            let [a, b, c, d] = corners.map(|v| space.point(v));
+            let rounded = space.clear_orient(corners);
+            assert!(rounded.is_eq() || rounded == exact::orient3d(a, b, c, d), "{corners:?}");
+            (clear, unclear) =
+                (clear + u32::from(rounded.is_ne()), unclear + u32::from(rounded.is_eq()));
+            for axis in 0..3 {
+                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                let turn = space.clear_turn(axis, [corners[0], corners[1], corners[2]]);
+                let [a, b, c] = [a, b, c].map(|p| [p[i], p[j]]);
+                assert!(turn.is_eq() || turn == orient2d(a, b, c), "{corners:?} {axis}");
+            }
+        }
+        assert!(clear > 1000 && unclear > 10, "{clear} {unclear}");
+    }
+
+    // spec: C71
+    #[test]
+    fn beside_in_a_projection_is_beside() {
+        let step = |k: u32| f64::from(k.wrapping_mul(2_654_435_761) >> 20) / 256.0;
+        let points: Vec<P3> = (0..60).map(|k| [0, 1, 2].map(|i| step(3 * k + i))).collect();
+        let mesh = MeshData { points, ..MeshData::default() };
+        let space = Space::new(&mesh);
+        let (mut beside, mut meeting) = (0, 0);
+        for k in 0..6000_u32 {
+            let pick = |i: u32| (k.wrapping_mul(17).wrapping_add(i * 23 + i * i * k)) % 60;
+            let (mut s, mut t) = ([pick(0), pick(1), pick(2)], [pick(3), pick(4), pick(5)]);
+            // One common corner in every third pair, two in every third.
+            t[..(k % 3) as usize].copy_from_slice(&s[..(k % 3) as usize]);
+            let differ = |t: [u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+            if !differ(s) || !differ(t) {
+                continue;
+            }
+            let common = bring_common_first(&mut s, &mut t);
+            let truth = match common {
+                0 => space.disjoint_corners_meet(s, t),
+                1 => space.meet_beyond_corner(s, t),
+                2 => space.overlap_along_edge(s, t),
+                _ => continue,
+            };
+            let shown = (0..3).any(|axis| space.are_beside(axis, (s, t), common));
+            assert!(!(shown && truth), "{s:?} {t:?}");
+            (beside, meeting) = (beside + u32::from(shown), meeting + u32::from(truth));
+        }
+        assert!(beside > 1000 && meeting > 200, "{beside} {meeting}");
     }
 
     #[test]

@@ -90,14 +90,11 @@ impl Boxes {
             corners.iter().fold(NOWHERE, |b, &p| join(b, &[p, p]))
         };
         let wanted = (0..triangles.len() as u32).filter(|t| skip.binary_search(t).is_err());
-        let mut items: Vec<(u64, u32, Corners)> = wanted
-            .collect::<Vec<_>>()
-            .into_par_iter()
-            .map(|t| (bounds(t), t))
-            .map(|(b, t)| (morton(&b), t, b))
-            .collect();
-        items.par_sort_unstable_by_key(|item| (item.0, item.1));
-        let items: Vec<(Corners, u32)> = items.into_iter().map(|item| (item.2, item.1)).collect();
+        let mut order: Vec<(u64, u32)> =
+            wanted.collect::<Vec<_>>().into_par_iter().map(|t| (morton(&bounds(t)), t)).collect();
+        order.par_sort_unstable();
+        let items: Vec<(Corners, u32)> =
+            order.into_par_iter().map(|(_, t)| (bounds(t), t)).collect();
         let leaves = items.len().div_ceil(LEAF).next_power_of_two();
         let mut boxes = Self { nodes: vec![NOWHERE; 2 * leaves], items, leaves };
         for node in (1..2 * leaves).rev() {
@@ -112,8 +109,9 @@ impl Boxes {
 
     /// The triangles of a leaf; leaves share them out evenly.
     fn leaf(&self, node: usize) -> &[(Corners, u32)] {
-        let (count, i) = (self.items.len() as u128, (node - self.leaves) as u128);
-        let cut = |i: u128| usize::try_from(i * count / self.leaves as u128).unwrap_or(0);
+        // There are fewer than 2^32 triangles, and no more leaves: no product overflows.
+        let (count, i) = (self.items.len() as u64, (node - self.leaves) as u64);
+        let cut = |i: u64| (i * count >> self.leaves.trailing_zeros()) as usize;
         &self.items[cut(i)..cut(i + 1)]
     }
 

@@ -6,10 +6,10 @@
 
 use super::super::tree3::Tree;
 use crate::mesh::MeshData;
-use crate::metric::{FirstForm, normal};
+use crate::metric::FirstForm;
 use crate::model::Model;
 use crate::surface::{Surface, Tangents};
-use crate::vector::{Vector, add, along, cross, distance, dot, norm, norm_sq, scale, sub, unit};
+use crate::vector::{Vector, add, along, cross, distance, dot, norm_sq, scale, sub, unit};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ const PART: f64 = 5.5;
 /// A vertex on the surface may be off by this fraction of the model's size: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Triangles in a run.
-const RUN: usize = 2048;
+const RUN: usize = 8192;
 /// Slots of the two memories of a run.
 const SLOTS: usize = 4096;
 /// A sample farther from the foot found than this fraction of the longest side is searched for anew.
@@ -83,7 +83,8 @@ struct Seed {
 struct Foot {
     seed: Seed,
     distance: f64,
-    normal: Option<Vector>,
+    /// The normal, of any length; 0 where there is none.
+    normal: Vector,
 }
 
 impl Sheets {
@@ -128,7 +129,7 @@ impl Sheets {
     /// The nearest point of the surface, from the nearest lattice points.
     fn foot(&self, tree: &Tree<Seed>, p: Vector, seeds: usize) -> Foot {
         let none = Seed { piece: 0, at: [0.0; 2] };
-        let mut best = Foot { seed: none, distance: f64::INFINITY, normal: None };
+        let mut best = Foot { seed: none, distance: f64::INFINITY, normal: [0.0; 3] };
         let mut tried: Vec<Seed> = Vec::new();
         for (_, seed) in tree.nearest(p, seeds) {
             if seeds > SEEDS && tried.iter().any(|other| self.are_near(other, &seed)) {
@@ -157,28 +158,37 @@ impl Sheets {
         let domain = surface.domain();
         let mut at = seed.at;
         let mut tangents = surface.tangents(at[0], at[1]);
-        let mut nearest = distance(p, tangents.point);
+        let mut gap = sub(p, tangents.point);
+        let mut nearest_sq = norm_sq(gap);
+        let rounding_sq = STEP_OF_SIZE * self.size * STEP_OF_SIZE * self.size;
         for _ in 0..FOOT_STEPS {
-            let step = foot_step(&tangents, sub(p, tangents.point), at, domain);
+            // No step is longer than the distance.
+            if nearest_sq <= rounding_sq {
+                break;
+            }
+            let step = foot_step(&tangents, gap, at, domain);
             let place = clamped([at[0] + step[0], at[1] + step[1]], domain);
             let (du, dv) = (place[0] - at[0], place[1] - at[1]);
-            let moved = norm(along(scale(du, tangents.u), dv, tangents.v));
-            if moved <= STEP_OF_DISTANCE * nearest || moved <= STEP_OF_SIZE * self.size {
+            let moved_sq = norm_sq(along(scale(du, tangents.u), dv, tangents.v));
+            if moved_sq <= STEP_OF_DISTANCE * STEP_OF_DISTANCE * nearest_sq
+                || moved_sq <= rounding_sq
+            {
                 break;
             }
             let closer = (0..HALVINGS).find_map(|halvings| {
                 let part = 1.0 / f64::from(1_u32 << halvings);
                 let place = clamped([at[0] + part * step[0], at[1] + part * step[1]], domain);
                 let there = surface.tangents(place[0], place[1]);
+                let gap = sub(p, there.point);
                 // A pole has no way on: all directions but one are the same point.
-                (distance(p, there.point) < nearest && normal(&there).is_some())
-                    .then_some((place, there))
+                (norm_sq(gap) < nearest_sq && cross(there.u, there.v) != [0.0; 3])
+                    .then_some((place, there, gap))
             });
-            let Some((place, there)) = closer else { break };
-            (at, tangents, nearest) = (place, there, distance(p, there.point));
+            let Some((place, there, away)) = closer else { break };
+            (at, tangents, gap, nearest_sq) = (place, there, away, norm_sq(away));
         }
         let seed = Seed { piece: seed.piece, at };
-        Foot { seed, distance: nearest, normal: normal(&tangents) }
+        Foot { seed, distance: nearest_sq.sqrt(), normal: cross(tangents.u, tangents.v) }
     }
 }
 
@@ -192,6 +202,12 @@ struct Walk<'a> {
     middles: Vec<([u32; 2], Option<i32>, f64)>,
 }
 
+/// Places to look for the foot of a mean of N points from: one if all are on the same piece.
+enum Between<const N: usize> {
+    One(Seed),
+    Several([Seed; N]),
+}
+
 /// What a triangle may be measured against, and how far is too far.
 struct Against<'a> {
     tree: &'a Tree<Seed>,
@@ -202,7 +218,7 @@ struct Against<'a> {
 impl<'a> Walk<'a> {
     fn new(sheets: &'a Sheets, mesh: &'a MeshData) -> Self {
         let nowhere = Seed { piece: 0, at: [0.0; 2] };
-        let none = Foot { seed: nowhere, distance: f64::INFINITY, normal: None };
+        let none = Foot { seed: nowhere, distance: f64::INFINITY, normal: [0.0; 3] };
         let feet = vec![(u32::MAX, none); SLOTS];
         Self { sheets, mesh, feet, middles: vec![([u32::MAX; 2], None, 0.0); SLOTS] }
     }
@@ -232,7 +248,7 @@ impl<'a> Walk<'a> {
             chord_error,
             vertex_error: feet.iter().map(|foot| foot.distance).fold(0.0, f64::max),
             piece: centre.seed.piece,
-            cosine: up.zip(centre.normal).map(|(up, normal)| dot(up, normal)),
+            cosine: up.zip(unit(centre.normal)).map(|(up, normal)| dot(up, normal)),
         })
     }
 
@@ -263,17 +279,21 @@ impl<'a> Walk<'a> {
 
     /// The mean of places on one piece; of places on several pieces, all: one of them is on the piece
     /// that the triangle belongs to.
-    fn between<const N: usize>(feet: [Foot; N]) -> Vec<Seed> {
+    fn between<const N: usize>(feet: [Foot; N]) -> Between<N> {
         let piece = feet[0].seed.piece;
         let mean = |i: usize| feet.iter().map(|foot| foot.seed.at[i]).sum::<f64>() / N as f64;
         match feet.iter().all(|foot| foot.seed.piece == piece) {
-            true => vec![Seed { piece, at: [mean(0), mean(1)] }],
-            false => feet.iter().map(|foot| foot.seed).collect(),
+            true => Between::One(Seed { piece, at: [mean(0), mean(1)] }),
+            false => Between::Several(feet.map(|foot| foot.seed)),
         }
     }
 
     /// The foot of a sample from places near it, and from the lattice where that is not believed.
-    fn sample(&self, against: &Against<'_>, near: &[Seed], p: Vector) -> Foot {
+    fn sample<const N: usize>(&self, against: &Against<'_>, near: &Between<N>, p: Vector) -> Foot {
+        let near = match near {
+            Between::One(seed) => std::slice::from_ref(seed),
+            Between::Several(seeds) => seeds,
+        };
         let feet = near.iter().map(|&near| self.sheets.foot_from(near, p));
         let found =
             feet.reduce(|best, foot| if foot.distance < best.distance { foot } else { best });

@@ -51,7 +51,8 @@ impl Tensor {
         let net = all().map(projected).collect();
         let weights =
             if self.weights.is_empty() { Vec::new() } else { all().map(|p| p[3]).collect() };
-        Ok(Self { degrees: self.degrees, knots, counts, net, weights, is_joined: false })
+        let tables = super::tables(&knots, self.degrees, counts);
+        Ok(Self { degrees: self.degrees, knots, tables, counts, net, weights, is_joined: false })
     }
 
     /// Its image under an affine map.
