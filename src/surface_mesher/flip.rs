@@ -5,7 +5,7 @@ use crate::metric::FirstForm;
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation};
-use crate::vector::{cross, dot, norm_sq, sub};
+use crate::vector::{Vector, cross, dot, norm_sq, sub};
 
 /// Makes an open region nearly Delaunay in the metric of the surface: an edge is flipped when the
 /// circle of one triangle, as the metric in its middle sees it, holds the other apex.
@@ -75,12 +75,28 @@ const ACUTE: f64 = 0.867;
 fn edges_of_bad(mesh: &Triangulation, lifts: &[Lift], marked: &[bool]) -> Vec<HalfEdgeId> {
     let is_bad = |t: TriangleId| {
         let corners = mesh.corners(t).map(|v| v.index());
-        corners.iter().any(|&v| marked[v]) && shape(corners.map(|v| &lifts[v])) < ACUTE
+        corners.iter().any(|&v| marked[v]) && !is_acute(corners.map(|v| &lifts[v]))
     };
     let mut edges: Vec<HalfEdgeId> =
         mesh.triangles().filter(|&t| is_bad(t)).flat_map(TriangleId::half_edges).collect();
     edges.reverse();
     edges
+}
+
+/// Whether [`shape`] is at least [`ACUTE`], without a root; poles have no acute triangles here.
+fn is_acute(corners: [&Lift; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| corner.point);
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let normal = cross(ab, ac);
+    let length_sq = norm_sq(normal);
+    let faces = |n: Vector| {
+        let turn = dot(n, normal);
+        turn > 0.0 && turn * turn >= TURN * TURN * length_sq
+    };
+    // The sum of the squared sides.
+    let sides = 2.0 * (norm_sq(ab) + norm_sq(ac) - dot(ab, ac));
+    TWO_SQRT_3 * TWO_SQRT_3 * length_sq >= ACUTE * ACUTE * sides * sides
+        && corners.iter().all(|corner| faces(corner.normal))
 }
 
 fn flip(mesh: &mut Triangulation, e: HalfEdgeId, suspects: &mut Vec<HalfEdgeId>) {
@@ -105,6 +121,7 @@ fn is_convex([a, b, c, d]: [Point2; 4]) -> bool {
     orient2d(a, d, c) == Sign::Positive && orient2d(d, b, c) == Sign::Positive
 }
 
+const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
 /// A triangle may turn this far (a cosine) from the normals at its corners before it counts as worse.
 const TURN: f64 = 0.7;
 
@@ -112,7 +129,6 @@ const TURN: f64 = 0.7;
 /// at its corners, negative when it faces away. A triangle at a pole is an edge in space, and no
 /// concern.
 pub(super) fn shape(corners: [&Lift; 3]) -> f64 {
-    const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
     let [a, b, c] = corners.map(|corner| corner.point);
     if a == b || b == c || c == a {
         return f64::INFINITY;

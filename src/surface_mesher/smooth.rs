@@ -16,8 +16,8 @@ pub(super) struct Smoother<'a> {
     /// Vertices below this index never move.
     fixed: usize,
     active: Vec<bool>,
-    link: Vec<(Point2, Vector)>,
-    link_vertices: Vec<usize>,
+    /// The vertices around the one that is looked at.
+    link: Vec<usize>,
     flat: Vec<Point2>,
 }
 
@@ -29,8 +29,8 @@ const STEP_MIN: f64 = 2e-3;
 impl<'a> Smoother<'a> {
     /// For a mesh of so many vertices, all of them active.
     pub(super) fn new(chart: &'a SurfaceChart<'a>, fixed: usize, count: usize) -> Self {
-        let (link, link_vertices, flat) = (Vec::new(), Vec::new(), Vec::new());
-        Self { chart, fixed, active: vec![true; count], link, link_vertices, flat }
+        let (link, flat) = (Vec::new(), Vec::new());
+        Self { chart, fixed, active: vec![true; count], link, flat }
     }
 
     /// For a mesh of so many vertices that are all good where they are.
@@ -85,15 +85,15 @@ impl<'a> Smoother<'a> {
                 continue;
             }
             let Some(start) = outgoing[v] else { continue };
-            if !self.gather(mesh, start, points, lifts) {
+            if !self.gather(mesh, start) {
                 continue;
             }
-            if let Some((place, above)) = self.better_place(points[v], &lifts[v]) {
+            if let Some((place, above)) = self.better_place(v, points, lifts) {
                 points[v] = place;
                 lifts[v] = above;
                 moves += 1;
                 self.active[v] = true;
-                for &u in &self.link_vertices {
+                for &u in &self.link {
                     self.active[u] = true;
                 }
             }
@@ -102,20 +102,11 @@ impl<'a> Smoother<'a> {
     }
 
     /// Fills the polygon around the origin of `start`; `false` on the border.
-    fn gather(
-        &mut self,
-        mesh: &Triangulation,
-        start: HalfEdgeId,
-        points: &[Point2],
-        lifts: &[Lift],
-    ) -> bool {
+    fn gather(&mut self, mesh: &Triangulation, start: HalfEdgeId) -> bool {
         self.link.clear();
-        self.link_vertices.clear();
         let mut e = start;
         loop {
-            let u = mesh.dest(e).index();
-            self.link_vertices.push(u);
-            self.link.push((points[u], lifts[u].point));
+            self.link.push(mesh.dest(e).index());
             match mesh.rotate_ccw(e) {
                 None => return false,
                 Some(next) if next == start => return true,
@@ -125,15 +116,21 @@ impl<'a> Smoother<'a> {
     }
 
     /// A place that is better in space and valid in (u, v), if a step finds one.
-    fn better_place(&mut self, v: Point2, above: &Lift) -> Option<(Point2, Lift)> {
+    fn better_place(
+        &mut self,
+        v: usize,
+        points: &[Point2],
+        lifts: &[Lift],
+    ) -> Option<(Point2, Lift)> {
+        let (v, above) = (points[v], &lifts[v]);
         if above.is_pole() {
             return None;
         }
         let x = unit(above.u)?;
         let y = cross(above.normal, x);
         self.flat.clear();
-        self.flat.extend(self.link.iter().map(|&(_, q)| {
-            let arm = sub(q, above.point);
+        self.flat.extend(self.link.iter().map(|&u| {
+            let arm = sub(lifts[u].point, above.point);
             Point2::new(dot(x, arm), dot(y, arm))
         }));
         let [mut dx, mut dy] = newton_step(&self.flat)?;
@@ -147,11 +144,11 @@ impl<'a> Smoother<'a> {
             }
             let dv = dy / yv;
             let place = Point2::new(v.x + (dx - xv * dv) / xu, v.y + dv);
-            if place.is_finite() && self.is_valid(place) {
+            if place.is_finite() && self.is_valid(place, points) {
                 let there = self.chart.sheet.tangents(place);
                 let (now, worst_now) =
-                    *before.get_or_insert_with(|| self.energy(above.point, above.normal));
-                let (then, worst_then) = self.energy(there.point, cross(there.u, there.v));
+                    *before.get_or_insert_with(|| self.energy(above.point, above.normal, lifts));
+                let (then, worst_then) = self.energy(there.point, cross(there.u, there.v), lifts);
                 if then < now && worst_then <= worst_now {
                     return Some((place, lift(&there)));
                 }
@@ -163,36 +160,32 @@ impl<'a> Smoother<'a> {
 
     /// Sum and largest of the squared inverse mean ratios in space; infinite when a triangle faces
     /// away from the normal, whatever its length.
-    fn energy(&self, v: Vector, normal: Vector) -> (f64, f64) {
-        let (mut sum, mut worst) = (0.0, 0.0_f64);
-        let last = self.link[self.link.len() - 1].1;
-        let (mut u, mut a) = (last, sub(last, v));
-        let mut a_sq = norm_sq(a);
-        for &(_, w) in &self.link {
-            let b = sub(w, v);
-            let b_sq = norm_sq(b);
-            if u != w {
-                // Half the sum of the squared sides.
-                let q = a_sq + b_sq - dot(a, b);
-                let area = cross(a, b);
-                let f_sq = if dot(area, normal) > 0.0 {
-                    4.0 * q * q / norm_sq(area)
-                } else {
-                    f64::INFINITY
-                };
+    fn energy(&self, v: Vector, normal: Vector, lifts: &[Lift]) -> (f64, f64) {
+        let (mut sum, mut worst) = (0.0, 0.0);
+        let mut a = sub(lifts[self.link[self.link.len() - 1]].point, v);
+        for &w in &self.link {
+            let b = sub(lifts[w].point, v);
+            // Half the sum of the squared sides.
+            let q = norm_sq(a) + norm_sq(b) - dot(a, b);
+            let area = cross(a, b);
+            if dot(area, normal) > 0.0 {
+                let f_sq = 4.0 * q * q / norm_sq(area);
                 sum += f_sq;
-                worst = worst.max(f_sq);
+                worst = if f_sq > worst { f_sq } else { worst };
+            } else if a != b {
+                return (f64::INFINITY, f64::INFINITY);
             }
-            (u, a, a_sq) = (w, b, b_sq);
+            a = b;
         }
         (sum, worst)
     }
 
     /// Whether all triangles of the star are strictly counterclockwise in (u, v), exactly.
-    fn is_valid(&self, place: Point2) -> bool {
-        (0..self.link.len()).all(|i| {
-            let (u, w) = (self.link[i].0, self.link[(i + 1) % self.link.len()].0);
-            orient2d(place, u, w) == Sign::Positive
+    fn is_valid(&self, place: Point2, points: &[Point2]) -> bool {
+        let mut u = self.link[self.link.len() - 1];
+        self.link.iter().all(|&w| {
+            let from = std::mem::replace(&mut u, w);
+            orient2d(place, points[from], points[w]) == Sign::Positive
         })
     }
 }

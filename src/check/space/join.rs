@@ -14,13 +14,14 @@ const LEAF: usize = 4;
 /// answer for surfaces in which everything meets everything.
 const MEETINGS_MAX: usize = 64;
 
-/// Lower and upper corner of a closed box.
-type Corners = [[f32; 3]; 2];
+/// Lower and upper corner of a closed box; a fourth coordinate, all 0, makes four comparisons one.
+type Corners = [[f32; 4]; 2];
 
-const NOWHERE: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+const NOWHERE: Corners = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
 
+#[inline]
 fn meet(a: &Corners, b: &Corners) -> bool {
-    (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k])
+    (0..4).fold(true, |all, k| all & (a[0][k] <= b[1][k]) & (b[0][k] <= a[1][k]))
 }
 
 fn join(a: Corners, b: &Corners) -> Corners {
@@ -49,12 +50,13 @@ impl Frame {
         }
     }
 
-    fn map(&self, p: [f64; 3]) -> [f32; 3] {
+    fn map(&self, p: [f64; 3]) -> [f32; 4] {
         // Halves cannot overflow.
-        std::array::from_fn(|k| {
+        let [x, y, z] = std::array::from_fn(|k| {
             let half = p[k] / 2.0 - self.middle[k] / 2.0;
             crate::check::ldexp(half, 1 - self.exponent) as f32
-        })
+        });
+        [x, y, z, 0.0]
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::super::tree3::Tree;
 use crate::mesh::MeshData;
-use crate::metric::FirstForm;
+use crate::metric::{FirstForm, normal};
 use crate::model::Model;
 use crate::surface::{Surface, Tangents};
 use crate::vector::{Vector, add, along, cross, distance, dot, norm_sq, scale, sub, unit};
@@ -30,6 +30,10 @@ const PART: f64 = 5.5;
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Triangles in a run.
 const RUN: usize = 8192;
+/// A determinant below this fraction of the largest there can be counts as 0: as at poles.
+const FLAT: f64 = 1e-24;
+/// The tangents of no place.
+const NOWHERE: Tangents = Tangents { point: [0.0; 3], u: [0.0; 3], v: [0.0; 3] };
 /// Slots of the two memories of a run.
 const SLOTS: usize = 4096;
 /// A sample farther from the foot found than this fraction of the longest side is searched for anew.
@@ -83,8 +87,35 @@ struct Seed {
 struct Foot {
     seed: Seed,
     distance: f64,
-    /// The normal, of any length; 0 where there is none.
-    normal: Vector,
+    tangents: Tangents,
+}
+
+/// The foot of a corner, and what it says of the feet of points near it.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    seed: Seed,
+    distance: f64,
+    /// The vectors whose products with a step in space are the steps in u and v; 0 at poles.
+    dual: [Vector; 2],
+}
+
+impl Corner {
+    fn new(foot: &Foot) -> Self {
+        let Tangents { u, v, .. } = foot.tangents;
+        let FirstForm { e, f, g } = FirstForm::new(&foot.tangents);
+        let determinant = e * g - f * f;
+        let dual = match determinant > FLAT * e * g {
+            true => [along(scale(g, u), -f, v), along(scale(e, v), -f, u)]
+                .map(|w| scale(1.0 / determinant, w)),
+            false => [[0.0; 3]; 2],
+        };
+        Self { seed: foot.seed, distance: foot.distance, dual }
+    }
+
+    /// How the parameters change along a step in space.
+    fn step(&self, step: Vector) -> [f64; 2] {
+        self.dual.map(|w| dot(w, step))
+    }
 }
 
 impl Sheets {
@@ -129,7 +160,7 @@ impl Sheets {
     /// The nearest point of the surface, from the nearest lattice points.
     fn foot(&self, tree: &Tree<Seed>, p: Vector, seeds: usize) -> Foot {
         let none = Seed { piece: 0, at: [0.0; 2] };
-        let mut best = Foot { seed: none, distance: f64::INFINITY, normal: [0.0; 3] };
+        let mut best = Foot { seed: none, distance: f64::INFINITY, tangents: NOWHERE };
         let mut tried: Vec<Seed> = Vec::new();
         for (_, seed) in tree.nearest(p, seeds) {
             if seeds > SEEDS && tried.iter().any(|other| self.are_near(other, &seed)) {
@@ -188,7 +219,7 @@ impl Sheets {
             (at, tangents, gap, nearest_sq) = (place, there, away, norm_sq(away));
         }
         let seed = Seed { piece: seed.piece, at };
-        Foot { seed, distance: nearest_sq.sqrt(), normal: cross(tangents.u, tangents.v) }
+        Foot { seed, distance: nearest_sq.sqrt(), tangents }
     }
 }
 
@@ -197,7 +228,7 @@ struct Walk<'a> {
     sheets: &'a Sheets,
     mesh: &'a MeshData,
     /// Feet of vertices, at the slots of their numbers.
-    feet: Vec<(u32, Foot)>,
+    feet: Vec<(u32, Corner)>,
     /// Distances of the middles of edges, at the slots of their ends.
     middles: Vec<([u32; 2], Option<i32>, f64)>,
 }
@@ -218,7 +249,7 @@ struct Against<'a> {
 impl<'a> Walk<'a> {
     fn new(sheets: &'a Sheets, mesh: &'a MeshData) -> Self {
         let nowhere = Seed { piece: 0, at: [0.0; 2] };
-        let none = Foot { seed: nowhere, distance: f64::INFINITY, normal: [0.0; 3] };
+        let none = Corner { seed: nowhere, distance: f64::INFINITY, dual: [[0.0; 3]; 2] };
         let feet = vec![(u32::MAX, none); SLOTS];
         Self { sheets, mesh, feet, middles: vec![([u32::MAX; 2], None, 0.0); SLOTS] }
     }
@@ -234,13 +265,20 @@ impl<'a> Walk<'a> {
         let against =
             Against { tree, marker, believed: believed.min(self.sheets.limit.unwrap_or(believed)) };
         let feet = self.corners(&against, vertices, [a, b, c]);
-        let near = Self::between(feet);
+        let arms = [sub(b, a), sub(c, b), sub(a, c)];
+        // A quadratic map has at the centre its mean at the corners less an eighteenth of its second
+        // differences along the sides, in the middle of a side the mean at the ends less an eighth.
+        let bends = [0, 1, 2].map(|i| bend(&feet[i], &feet[(i + 1) % 3], arms[i]));
+        let more = [0, 1].map(|k| bends.iter().map(|bend| bend[k]).sum::<f64>() / 18.0);
+        let near = self.between(feet, more);
         let centre = self.sample(&against, &near, scale(1.0 / 3.0, add(a, add(b, c))));
         let mut chord_error = centre.distance;
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let middle = scale(0.5, add([a, b, c][i], [a, b, c][j]));
             let ends = [vertices[i].min(vertices[j]), vertices[i].max(vertices[j])];
-            chord_error = chord_error.max(self.middle(&against, ends, [feet[i], feet[j]], middle));
+            let near = || self.between([feet[i], feet[j]], bends[i].map(|x| 0.125 * x));
+            let off = self.middle(&against, ends, near(), middle);
+            chord_error = chord_error.max(off);
         }
         let up = unit(cross(sub(b, a), sub(c, a)));
         Some(Measured {
@@ -248,42 +286,57 @@ impl<'a> Walk<'a> {
             chord_error,
             vertex_error: feet.iter().map(|foot| foot.distance).fold(0.0, f64::max),
             piece: centre.seed.piece,
-            cosine: up.zip(unit(centre.normal)).map(|(up, normal)| dot(up, normal)),
+            cosine: up.zip(normal(&centre.tangents)).map(|(up, normal)| dot(up, normal)),
         })
     }
 
     /// The feet of a triangle's corners: those known, then the others from one of them.
-    fn corners(&mut self, against: &Against<'_>, vertices: [u32; 3], at: [Vector; 3]) -> [Foot; 3] {
+    fn corners(
+        &mut self,
+        against: &Against<'_>,
+        vertices: [u32; 3],
+        at: [Vector; 3],
+    ) -> [Corner; 3] {
         let known = vertices.map(|v| self.known(against, v));
-        let near = known.into_iter().flatten().next();
+        let near = known.into_iter().zip(at).find_map(|(corner, at)| Some((corner?, at)));
         std::array::from_fn(|i| {
             known[i].unwrap_or_else(|| {
                 let rounding = ROUNDING * self.sheets.size;
-                let found = near.map(|near| self.sheets.foot_from(near.seed, at[i]));
+                let found = near.map(|(near, from)| {
+                    let seed = self.moved(near.seed, near.step(sub(at[i], from)));
+                    self.sheets.foot_from(seed, at[i])
+                });
                 let is_on = |foot: &Foot| foot.distance <= rounding;
                 let search = |seeds| self.sheets.foot(against.tree, at[i], seeds);
                 let few = || Some(search(SEEDS)).filter(is_on);
                 let foot = found.filter(is_on).or_else(few);
                 let foot = foot.unwrap_or_else(|| nearer(found, search(SEEDS_OF_VERTEX)));
-                self.feet[vertices[i] as usize % SLOTS] = (vertices[i], foot);
-                foot
+                let corner = Corner::new(&foot);
+                self.feet[vertices[i] as usize % SLOTS] = (vertices[i], corner);
+                corner
             })
         })
     }
 
-    fn known(&self, against: &Against<'_>, v: u32) -> Option<Foot> {
+    /// A place moved within its piece.
+    fn moved(&self, Seed { piece, at }: Seed, by: [f64; 2]) -> Seed {
+        let domain = self.sheets.pieces[piece].0.domain();
+        Seed { piece, at: clamped([at[0] + by[0], at[1] + by[1]], domain) }
+    }
+
+    fn known(&self, against: &Against<'_>, v: u32) -> Option<Corner> {
         let (vertex, foot) = self.feet[v as usize % SLOTS];
         let fits = |marker| self.sheets.pieces[foot.seed.piece].1 == marker;
         (vertex == v && against.marker.is_none_or(fits)).then_some(foot)
     }
 
-    /// The mean of places on one piece; of places on several pieces, all: one of them is on the piece
-    /// that the triangle belongs to.
-    fn between<const N: usize>(feet: [Foot; N]) -> Between<N> {
+    /// The mean of places on one piece and a correction; of places on several pieces, all: one of them
+    /// is on the piece that the triangle belongs to.
+    fn between<const N: usize>(&self, feet: [Corner; N], more: [f64; 2]) -> Between<N> {
         let piece = feet[0].seed.piece;
         let mean = |i: usize| feet.iter().map(|foot| foot.seed.at[i]).sum::<f64>() / N as f64;
         match feet.iter().all(|foot| foot.seed.piece == piece) {
-            true => Between::One(Seed { piece, at: [mean(0), mean(1)] }),
+            true => Between::One(self.moved(Seed { piece, at: [mean(0), mean(1)] }, more)),
             false => Between::Several(feet.map(|foot| foot.seed)),
         }
     }
@@ -315,7 +368,7 @@ impl<'a> Walk<'a> {
         &mut self,
         against: &Against<'_>,
         ends: [u32; 2],
-        feet: [Foot; 2],
+        near: Between<2>,
         at: Vector,
     ) -> f64 {
         let slot = (ends[0].wrapping_mul(0x9E37_79B1) ^ ends[1]) as usize % SLOTS;
@@ -323,10 +376,17 @@ impl<'a> Walk<'a> {
         if known == ends && marker == against.marker {
             return distance;
         }
-        let distance = self.sample(against, &Self::between(feet), at).distance;
+        let distance = self.sample(against, &near, at).distance;
         self.middles[slot] = (ends, against.marker, distance);
         distance
     }
+}
+
+/// The parameters' second difference along a side of a triangle, with the other sign: what they change
+/// by per length at its start, less what they do at its end.
+fn bend(start: &Corner, end: &Corner, arm: Vector) -> [f64; 2] {
+    let (s, e) = (start.step(arm), end.step(arm));
+    [s[0] - e[0], s[1] - e[1]]
 }
 
 fn nearer(found: Option<Foot>, other: Foot) -> Foot {
@@ -345,7 +405,7 @@ fn foot_step(tangents: &Tangents, gap: Vector, at: [f64; 2], domain: [[f64; 2]; 
     let determinant = e * g - f * f;
     let step = [(g * du - f * dv) / determinant, (e * dv - f * du) / determinant];
     let alone = |d: f64, length_sq: f64| if length_sq > 0.0 { d / length_sq } else { 0.0 };
-    if determinant <= 1e-24 * e * g || !step.iter().all(|x| x.is_finite()) {
+    if determinant <= FLAT * e * g || !step.iter().all(|x| x.is_finite()) {
         return [alone(du, e), alone(dv, g)];
     }
     let leaves = |i: usize| {
