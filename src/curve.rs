@@ -370,8 +370,9 @@ impl Curve {
             sums.weights[0] = 1.0;
             return sums;
         }
-        for r in 0..=self.degree {
-            let (point, weight) = (self.points[basis.first + r], self.weight(basis.first + r));
+        let range = basis.first..=basis.first + self.degree;
+        let controls = self.points[range.clone()].iter().zip(&self.weights[range]);
+        for (r, (&point, &weight)) in controls.enumerate() {
             for order in 0..N {
                 let part = basis.rows[order][r] * weight;
                 sums.points[order] = along(sums.points[order], part, point);

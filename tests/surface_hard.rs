@@ -1,6 +1,7 @@
 //! Surfaces that fight back: degenerate, touching, cusped, folded and overlapping patches. Each gets a
 //! right mesh, which both checks confirm, or findings and errors that name what is wrong.
 
+use std::collections::{BTreeMap, BTreeSet};
 use trigrade::check::surface::{SurfaceLimits, against_model};
 use trigrade::check::{CheckOptions, Dimension, Id, Metric, Report, check};
 use trigrade::curve::{Curve, clamped_knots};
@@ -9,7 +10,7 @@ use trigrade::mesher::Unobserved;
 use trigrade::model::{Model, Patch, Trim, TrimCurve};
 use trigrade::surface::{Coons, Revolution, Surface, Tensor};
 use trigrade::surface_mesher::{SurfaceMeshError, SurfaceOptions, mesh_model};
-use trigrade::vector::{Vector, distance};
+use trigrade::vector::{Vector, distance, dot, norm_sq, sub};
 
 fn model(surface: Surface, spacing: f64) -> Model {
     let patch = Patch { name: "hard".to_owned(), surface, marker: 1, reversed: false };
@@ -236,4 +237,72 @@ fn a_triangle_with_two_collapsed_edges_is_refused_and_with_one_is_meshed() {
     let two = model(bezier(&[vec![tip, tip], vec![tip, b]]), 0.1);
     let text = run(&two).expect_err("a line").to_string();
     assert!(text.contains("hard"), "{text}");
+}
+
+/// The least R/2r of a triangle with this angle: that of the isosceles one. With the angles a, b and b,
+/// r/R = 4 sin(a/2) sin(b/2)^2 = 2 sin(a/2) (1 - sin(a/2)).
+fn least_ratio(angle: f64) -> f64 {
+    let s = (angle / 2.0).sin();
+    1.0 / (4.0 * s * (1.0 - s))
+}
+
+#[test]
+fn no_triangle_with_an_angle_is_better_than_the_isosceles_one() {
+    assert!((least_ratio(std::f64::consts::FRAC_PI_3) - 1.0).abs() < 1e-15);
+    let ratio = |[a, b]: [f64; 2]| {
+        let halves = [a, b, std::f64::consts::PI - a - b].map(|x| (x / 2.0).sin());
+        1.0 / (8.0 * halves[0] * halves[1] * halves[2])
+    };
+    for i in 1..60 {
+        let angle = f64::from(i).to_radians();
+        let best = (1..1000).map(|k| f64::from(k) / 1000.0 * (std::f64::consts::PI - angle));
+        let best = best.map(|b| ratio([angle, b])).fold(f64::INFINITY, f64::min);
+        assert!(best >= least_ratio(angle) * (1.0 - 1e-12) && best < 1.001 * least_ratio(angle));
+    }
+}
+
+// spec: S30
+#[test]
+fn the_corner_of_a_sheared_patch_is_all_that_is_bad_and_no_mesh_is_better_there() {
+    let row = |u: f64, bulge: f64| {
+        vec![
+            [u, 0.1 * u, bulge],
+            [u + 10.0, 0.1 * u + 0.2, 0.3 - 3.0 * bulge],
+            [u + 20.0, 0.1 * u + 0.4, bulge],
+        ]
+    };
+    let sheared = model(bezier(&[row(0.0, 0.0), row(1.0, 0.2), row(2.0, 0.0)]), 0.04);
+    let mesh = run(&sheared).expect("a mesh");
+    assert_eq!(findings(&sheared, &mesh), []);
+    let at = |v: u32| mesh.points[v as usize];
+    let mut uses: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    let edges = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+    for edge in mesh.triangles.iter().flat_map(|&t| edges(t)) {
+        *uses.entry(edge).or_default() += 1;
+    }
+    let rim: BTreeSet<u32> = uses.iter().filter(|(_, n)| **n == 1).flat_map(|(e, _)| *e).collect();
+    let (mut forced, mut inside) = (1.0_f64, 1.0_f64);
+    for t in &mesh.triangles {
+        let alone = MeshData {
+            points: t.map(at).to_vec(),
+            triangles: vec![[0, 1, 2]],
+            ..MeshData::default()
+        };
+        if t.iter().any(|v| !rim.contains(v)) {
+            inside = inside.max(worst_ratio(&alone));
+        }
+        // Both sides of the patch that meet in its corner.
+        if edges(*t).iter().filter(|edge| uses[*edge] == 1).count() == 2 {
+            let corner = (0..3).map(|i| {
+                let [a, b, c] = [t[i], t[(i + 1) % 3], t[(i + 2) % 3]].map(at);
+                let (p, q) = (sub(b, a), sub(c, a));
+                (dot(p, q) / (norm_sq(p) * norm_sq(q)).sqrt()).acos()
+            });
+            forced = forced.max(least_ratio(corner.fold(f64::INFINITY, f64::min)));
+        }
+    }
+    let worst = worst_ratio(&mesh);
+    assert!(forced > 2.9, "a corner of 10.5 degrees: {forced}");
+    assert!(worst < 1.06 * forced, "{worst} where {forced} is forced");
+    assert!(inside < 1.2, "{inside}");
 }

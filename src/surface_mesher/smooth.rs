@@ -23,8 +23,9 @@ pub(super) struct Smoother<'a> {
 
 /// Newton's step, then halves of it.
 const TRIES: u32 = 3;
-/// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
-const STEP_MIN: f64 = 2e-3;
+/// Steps shorter than this fraction of the distance to the first neighbour are not worth a move: a
+/// fifth of it makes R/2r better by 3e-4 in the mean, and takes a quarter more time.
+const STEP_MIN: f64 = 1e-2;
 
 impl<'a> Smoother<'a> {
     /// For a mesh of so many vertices, all of them active.

@@ -45,13 +45,10 @@ impl<'a> Space<'a> {
     #[inline]
     fn clear_turn(&self, axis: usize, corners: [u32; 3]) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let [a, b, c] = corners.map(|v| self.rounded[v as usize]);
-        let determinant = exact::determinant([a[i], b[i], c[i]], [a[j], b[j], c[j]]);
-        match determinant {
-            d if d > OFF_IN_PLANE => Greater,
-            d if d < -OFF_IN_PLANE => Less,
-            _ => Equal,
-        }
+        clear_turn_of(corners.map(|v| {
+            let p = &self.rounded[v as usize];
+            [p[i], p[j]]
+        }))
     }
 
     /// The sign of orient3d, if it is certain from rounded coordinates; else `Equal`.
@@ -110,10 +107,11 @@ impl<'a> Space<'a> {
         triangles.par_chunks(CHUNK).enumerate().flat_map_iter(piece).collect()
     }
 
-    /// Whether two triangles with area meet in more than their common corners and edge.
-    pub(super) fn meet_improperly(&self, mut s: [u32; 3], mut t: [u32; 3]) -> bool {
+    /// Whether two triangles with area meet in more than their common corners and edge; they are looked
+    /// at along `axis` first.
+    pub(super) fn meet_improperly(&self, axis: usize, mut s: [u32; 3], mut t: [u32; 3]) -> bool {
         let common = bring_common_first(&mut s, &mut t);
-        if self.are_beside(self.facing_axis(s), (s, t), common) {
+        if self.are_beside(axis, (s, t), common) {
             return false;
         }
         match common {
@@ -125,7 +123,7 @@ impl<'a> Space<'a> {
     }
 
     /// The axis along which a triangle's projection is largest, up to rounding.
-    fn facing_axis(&self, corners: [u32; 3]) -> usize {
+    pub(super) fn facing_axis(&self, corners: [u32; 3]) -> usize {
         let [a, b, c] = corners.map(|v| self.point(v));
         let normal = cross(sub(b, a), sub(c, a)).map(f64::abs);
         let larger = usize::from(normal[1] > normal[0]);
@@ -137,9 +135,15 @@ impl<'a> Space<'a> {
     /// and no corner of the other on that side. It runs along an edge of one of them, through the
     /// common corners. The plane above it meets the first triangle in the common corners or edge.
     fn are_beside(&self, axis: usize, (s, t): ([u32; 3], [u32; 3]), common: usize) -> bool {
-        let parts = |line: [u32; 2], own: u32, others: &[u32]| {
-            let side = self.clear_turn(axis, [line[0], line[1], own]).reverse();
-            let is_across = |&v: &u32| self.clear_turn(axis, [line[0], line[1], v]) == side;
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let projected = |v: u32| {
+            let p = &self.rounded[v as usize];
+            [p[i], p[j]]
+        };
+        let (s, t) = (s.map(projected), t.map(projected));
+        let parts = |line: [[i64; 2]; 2], own: [i64; 2], others: &[[i64; 2]]| {
+            let side = clear_turn_of([line[0], line[1], own]).reverse();
+            let is_across = |&p: &[i64; 2]| clear_turn_of([line[0], line[1], p]) == side;
             side.is_ne() && others.iter().all(is_across)
         };
         match common {
@@ -245,6 +249,16 @@ impl<'a> Space<'a> {
     }
 }
 
+/// The sign of the area of a triangle of rounded coordinates, if it is certain; else `Equal`.
+#[inline]
+fn clear_turn_of([a, b, c]: [[i64; 2]; 3]) -> Ordering {
+    match exact::determinant([a[0], b[0], c[0]], [a[1], b[1], c[1]]) {
+        d if d > OFF_IN_PLANE => Greater,
+        d if d < -OFF_IN_PLANE => Less,
+        _ => Equal,
+    }
+}
+
 /// Whether all signs are positive, or all negative.
 fn is_one_sided(signs: &[Ordering; 3]) -> bool {
     signs[0].is_ne() && signs[0] == signs[1] && signs[1] == signs[2]
@@ -279,10 +293,12 @@ mod tests {
             for shift in 0..3 {
                 let (mut s, mut u) = ([0, 1, 2], t);
                 s.rotate_left(shift);
-                answers.push(space.meet_improperly(s, u));
-                answers.push(space.meet_improperly(u, s));
+                for axis in 0..3 {
+                    answers.push(space.meet_improperly(axis, s, u));
+                    answers.push(space.meet_improperly(axis, u, s));
+                }
                 u.swap(0, 2);
-                answers.push(space.meet_improperly(s, u));
+                answers.push(space.meet_improperly(space.facing_axis(s), s, u));
             }
         }
         assert!(answers.iter().all(|&a| a == answers[0]), "{answers:?}");

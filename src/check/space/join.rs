@@ -7,6 +7,7 @@
 
 use super::intersect::Space;
 use rayon::prelude::*;
+use std::cell::LazyCell;
 
 /// Triangles per leaf.
 const LEAF: usize = 4;
@@ -179,13 +180,15 @@ fn examine(
     let mut met: std::collections::BTreeMap<u32, usize> = std::collections::BTreeMap::new();
     boxes.leaf_pairs(a, b, &mut |a, b| {
         for (i, (bounds, t)) in boxes.leaf(a).iter().enumerate() {
+            let axis = LazyCell::new(|| space.facing_axis(triangles[*t as usize]));
             let others = if a == b { &boxes.leaf(b)[i + 1..] } else { boxes.leaf(b) };
             for (other, u) in others {
                 if !meet(bounds, other) || met.get(t).is_some_and(|&m| m >= MEETINGS_MAX) {
                     continue;
                 }
                 found.tests += 1;
-                if space.meet_improperly(triangles[*t as usize], triangles[*u as usize]) {
+                let [s, u_corners] = [*t, *u].map(|t| triangles[t as usize]);
+                if space.meet_improperly(*axis, s, u_corners) {
                     found.pairs.push([*t.min(u), *t.max(u)]);
                     *met.entry(*t).or_default() += 1;
                 }

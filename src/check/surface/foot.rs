@@ -66,6 +66,8 @@ impl Measured {
 /// The smooth pieces of a model, each with its marker, and lattices on them.
 pub(super) struct Sheets {
     pieces: Vec<(Surface, i32)>,
+    /// The rectangle of parameters of each.
+    domains: Vec<[[f64; 2]; 2]>,
     /// A tree of lattice points for each marker.
     trees: BTreeMap<i32, Tree<Seed>>,
     /// One for all, where the mesh has triangles without a marker of the model.
@@ -134,7 +136,8 @@ impl Sheets {
         let size = diagonal(lists.values().flatten().map(|(p, _)| *p));
         let all = needs_all.then(|| Tree::new(every()));
         let trees = lists.into_iter().map(|(marker, list)| (marker, Tree::new(list))).collect();
-        Self { pieces, trees, all, limit, size }
+        let domains = pieces.iter().map(|(piece, _)| piece.domain()).collect();
+        Self { pieces, domains, trees, all, limit, size }
     }
 
     /// Measures all triangles, in their order; the same for any number of threads.
@@ -177,7 +180,7 @@ impl Sheets {
 
     /// Whether two places are the same part of the same piece, whose foot either of them finds.
     fn are_near(&self, a: &Seed, b: &Seed) -> bool {
-        let domain = self.pieces[a.piece].0.domain();
+        let domain = self.domains[a.piece];
         let reach = |i: usize| PART / f64::from(LATTICE) * (domain[i][1] - domain[i][0]);
         a.piece == b.piece && (0..2).all(|i| (a.at[i] - b.at[i]).abs() <= reach(i))
     }
@@ -186,7 +189,7 @@ impl Sheets {
     /// is halved.
     fn foot_from(&self, seed: Seed, p: Vector) -> Foot {
         let surface = &self.pieces[seed.piece].0;
-        let domain = surface.domain();
+        let domain = self.domains[seed.piece];
         let mut at = seed.at;
         let mut tangents = surface.tangents(at[0], at[1]);
         let mut gap = sub(p, tangents.point);
@@ -320,7 +323,7 @@ impl<'a> Walk<'a> {
 
     /// A place moved within its piece.
     fn moved(&self, Seed { piece, at }: Seed, by: [f64; 2]) -> Seed {
-        let domain = self.sheets.pieces[piece].0.domain();
+        let domain = self.sheets.domains[piece];
         Seed { piece, at: clamped([at[0] + by[0], at[1] + by[1]], domain) }
     }
 
@@ -359,7 +362,7 @@ impl<'a> Walk<'a> {
     /// Whether a foot lies inside its piece: on a side the search may have stopped short of a nearer
     /// one on the next piece.
     fn is_inside(&self, foot: &Foot) -> bool {
-        let domain = self.sheets.pieces[foot.seed.piece].0.domain();
+        let domain = self.sheets.domains[foot.seed.piece];
         (0..2).all(|i| foot.seed.at[i] > domain[i][0] && foot.seed.at[i] < domain[i][1])
     }
 
