@@ -361,12 +361,14 @@ impl Curve {
         let mut sums = Sums { points: [[0.0; 3]; N], weights: [0.0; N] };
         if self.weights.is_empty() {
             let points = &self.points[basis.first..=basis.first + self.degree];
-            for (r, &point) in points.iter().enumerate() {
+            // From the first of them: derivatives between equal points are then exactly 0.
+            for (r, &point) in points.iter().enumerate().skip(1) {
+                let arm = sub(point, points[0]);
                 for order in 0..N {
-                    sums.points[order] = along(sums.points[order], basis.rows[order][r], point);
+                    sums.points[order] = along(sums.points[order], basis.rows[order][r], arm);
                 }
             }
-            // Their sum is 1 but for rounding, and the sum of the slopes 0.
+            sums.points[0] = add(points[0], sums.points[0]);
             sums.weights[0] = 1.0;
             return sums;
         }

@@ -7,7 +7,7 @@ use crate::curve::basis::{Basis, NARROW, Table, WIDTH};
 use crate::curve::{
     Curve, CurveError, check_knots, check_points, clamped_knots, cuts, piece_knots,
 };
-use crate::vector::{Vector, along, scale, sub};
+use crate::vector::{Vector, add, along, scale, sub};
 
 /// A NURBS surface.
 ///
@@ -139,24 +139,33 @@ impl Tensor {
     fn plain_tangents(&self, u: f64, v: f64) -> Tangents {
         let (u, v) = (self.narrow_basis::<2>(0, u), self.narrow_basis::<2>(1, v));
         let mut sums = Tangents { point: [0.0; 3], u: [0.0; 3], v: [0.0; 3] };
+        let mut base = [0.0; 3];
         for r in 0..=self.degrees[0] {
             let start = (u.first + r) * self.counts[1] + v.first;
-            let (mut row, mut slope) = ([0.0; 3], [0.0; 3]);
-            for (s, &control) in self.net[start..=start + self.degrees[1]].iter().enumerate() {
-                row = along(row, v.rows[0][s], control);
-                slope = along(slope, v.rows[1][s], control);
+            let controls = &self.net[start..=start + self.degrees[1]];
+            // From the first point of the row, and from the first row: derivatives between equal
+            // points, those of a pole, are then exactly 0.
+            let (mut row, mut slope) = (controls[0], [0.0; 3]);
+            for (s, &control) in controls.iter().enumerate().skip(1) {
+                let arm = sub(control, controls[0]);
+                row = along(row, v.rows[0][s], arm);
+                slope = along(slope, v.rows[1][s], arm);
             }
-            sums.point = along(sums.point, u.rows[0][r], row);
-            sums.u = along(sums.u, u.rows[1][r], row);
+            if r == 0 {
+                base = row;
+            }
+            let arm = sub(row, base);
+            sums.point = along(sums.point, u.rows[0][r], arm);
+            sums.u = along(sums.u, u.rows[1][r], arm);
             sums.v = along(sums.v, u.rows[0][r], slope);
         }
-        sums
+        Tangents { point: add(base, sums.point), ..sums }
     }
 
     /// Sums for orders of derivatives by u and by v that are together below N.
     fn all_sums<const N: usize>(&self, u: f64, v: f64) -> [[Sum; N]; N] {
         match self.is_narrow() {
-            true => self.sums(&self.narrow_basis::<N>(0, u), &self.narrow_basis::<N>(1, v)),
+            true => self.sums(&self.basis::<N, NARROW>(0, u), &self.basis::<N, NARROW>(1, v)),
             false => self.sums(&self.basis::<N, WIDTH>(0, u), &self.basis::<N, WIDTH>(1, v)),
         }
     }
@@ -186,6 +195,7 @@ impl Tensor {
         sums
     }
 
+    /// By the table, if it has one for the parameter.
     #[inline]
     fn narrow_basis<const N: usize>(&self, direction: usize, t: f64) -> Basis<N, NARROW> {
         self.tables[direction].at(t).unwrap_or_else(|| self.basis(direction, t))
@@ -263,4 +273,32 @@ fn tangents<const N: usize>(sums: &[[Sum; N]; N]) -> Tangents {
     let (point, weight) = (sums[0][0].point(), sums[0][0].weight);
     let first = |sum: &Sum| scale(1.0 / weight, sub(sum.point, scale(sum.weight, point)));
     Tangents { point, u: first(&sums[1][0]), v: first(&sums[0][1]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // spec: S1
+    #[test]
+    fn plain_tangents_are_those_of_the_sums_and_exactly_zero_along_a_pole() {
+        let height = |i: usize, j: usize| (i * i + 3 * j) as f64 % 5.0;
+        let tip = [0.3, 0.7, 1e3];
+        let row = |i: usize| (0..6).map(|j| [i as f64, j as f64, height(i, j)]).collect();
+        let rows: Vec<Vec<Vector>> =
+            (0..5).map(|i| if i == 0 { vec![tip; 6] } else { row(i) }).collect();
+        let patch = Tensor::clamped([2, 3], &rows).expect("a patch");
+        let [[u0, u1], [v0, v1]] = patch.domain();
+        for k in 0..400 {
+            let part = |n: u32| f64::from(n) / 19.0;
+            let (u, v) = (u0 + part(k / 20) * (u1 - u0), v0 + part(k % 20) * (v1 - v0));
+            let (plain, sums) = (patch.tangents(u, v), tangents(&patch.all_sums::<2>(u, v)));
+            for (a, b) in [(plain.point, sums.point), (plain.u, sums.u), (plain.v, sums.v)] {
+                assert!(crate::vector::norm(sub(a, b)) <= 1e-12 * 1e3, "{u} {v}");
+            }
+            if k < 20 {
+                assert_eq!((plain.point, plain.v), (tip, [0.0; 3]), "{v}");
+            }
+        }
+    }
 }
