@@ -127,7 +127,7 @@ impl Table {
     /// For knots that obey the rules of curves.
     #[must_use]
     pub fn new(knots: &[f64], degree: usize, count: usize) -> Self {
-        if degree < 2 || degree >= NARROW {
+        if !(2..NARROW).contains(&degree) {
             return Self::default();
         }
         let interval = |span: usize| {

@@ -114,7 +114,7 @@ impl Boxes {
     fn leaf(&self, node: usize) -> &[(Corners, u32)] {
         // There are fewer than 2^32 triangles, and no more leaves: no product overflows.
         let (count, i) = (self.items.len() as u64, (node - self.leaves) as u64);
-        let cut = |i: u64| (i * count >> self.leaves.trailing_zeros()) as usize;
+        let cut = |i: u64| ((i * count) >> self.leaves.trailing_zeros()) as usize;
         &self.items[cut(i)..cut(i + 1)]
     }
 
