@@ -10,7 +10,7 @@ use trigrade::mesher::Unobserved;
 use trigrade::model::{Model, Patch, Trim, TrimCurve};
 use trigrade::surface::{Coons, Revolution, Surface, Tensor};
 use trigrade::surface_mesher::{SurfaceMeshError, SurfaceOptions, mesh_model};
-use trigrade::vector::{Vector, distance, dot, norm_sq, sub};
+use trigrade::vector::{Vector, cross, distance, dot, norm_sq, sub};
 
 fn model(surface: Surface, spacing: f64) -> Model {
     let patch = Patch { name: "hard".to_owned(), surface, marker: 1, reversed: false };
@@ -261,6 +261,13 @@ fn no_triangle_with_an_angle_is_better_than_the_isosceles_one() {
     }
 }
 
+/// R/2r of a triangle in space.
+fn radius_ratio([a, b, c]: [Vector; 3]) -> f64 {
+    let [x, y, z] = [sub(b, a), sub(c, b), sub(a, c)].map(|side| norm_sq(side).sqrt());
+    let area_sq = norm_sq(cross(sub(b, a), sub(c, a))) / 4.0;
+    x * y * z * (x + y + z) / (16.0 * area_sq)
+}
+
 // spec: S30
 #[test]
 fn the_corner_of_a_sheared_patch_is_all_that_is_bad_and_no_mesh_is_better_there() {
@@ -283,13 +290,8 @@ fn the_corner_of_a_sheared_patch_is_all_that_is_bad_and_no_mesh_is_better_there(
     let rim: BTreeSet<u32> = uses.iter().filter(|(_, n)| **n == 1).flat_map(|(e, _)| *e).collect();
     let (mut forced, mut inside) = (1.0_f64, 1.0_f64);
     for t in &mesh.triangles {
-        let alone = MeshData {
-            points: t.map(at).to_vec(),
-            triangles: vec![[0, 1, 2]],
-            ..MeshData::default()
-        };
         if t.iter().any(|v| !rim.contains(v)) {
-            inside = inside.max(worst_ratio(&alone));
+            inside = inside.max(radius_ratio(t.map(at)));
         }
         // Both sides of the patch that meet in its corner.
         if edges(*t).iter().filter(|edge| uses[*edge] == 1).count() == 2 {
