@@ -113,7 +113,7 @@ impl Tensor {
 
     pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         let sums = self.all_sums::<3>(u, v);
-        let first = tangents(&sums);
+        let first = self.tangents(u, v);
         let Tangents { point, u: du, v: dv } = first;
         let weight = sums[0][0].weight;
         let (wu, wv) = (sums[1][0].weight, sums[0][1].weight);
