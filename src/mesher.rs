@@ -389,21 +389,16 @@ struct Made {
     fit: Option<Fit>,
 }
 
-/// Plain arrays in the user's coordinates, without points that no triangle uses.
+/// Plain arrays in the user's coordinates, without points that no triangle uses. The arrays of the
+/// front become those of the mesh where they can: memory is at its fullest here.
 fn collect(laid: FrontMesh, background: &Background, made: Made, scale: &Scale) -> Meshed {
-    let FrontMesh { points, mesh: topology, spacing, stats } = laid;
-    let mut triangles: Vec<[u32; 3]> =
-        topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
-    let renumber = Renumber::used(&triangles, points.len());
-    for corner in triangles.iter_mut().flatten() {
-        *corner = renumber.number(*corner);
-    }
-    let regions = region_markers(&topology, background);
-    // Half of all memory: the copies below take its place.
-    drop(topology);
+    let FrontMesh { mut points, mesh: topology, mut spacing, stats } = laid;
+    let renumber = Renumber::used(&topology, points.len());
     let edges = marked_edges(background, &renumber);
-    let points: Vec<Point2> = renumber.kept(&points).map(|p| scale.grow(p)).collect();
-    let spacing = renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect();
+    let regions = region_markers(&topology, background);
+    let triangles = topology.into_triangles(|v| renumber.number(v.0));
+    renumber.keep_points(&mut points, scale);
+    renumber.keep_spacing(&mut spacing, scale);
     let mesh = Mesh { points, triangles, edges, regions };
     let Made { prediction, improve, fit } = made;
     let (refine, splits, grid) = (None, 0, None);
@@ -432,28 +427,55 @@ fn marked_edges(background: &Background, renumber: &Renumber) -> Vec<MarkedEdge>
 
 /// New numbers of the points in use, in the old order.
 struct Renumber {
-    new: Vec<u32>,
+    /// For each point its new number; `None` when all are in use.
+    new: Option<Vec<u32>>,
 }
 
 const UNUSED: u32 = u32::MAX;
 
 impl Renumber {
-    fn used(triangles: &[[u32; 3]], points: usize) -> Self {
-        let mut new = vec![UNUSED; points];
-        for &v in triangles.iter().flatten() {
-            new[v as usize] = 0;
+    fn used(topology: &Triangulation, points: usize) -> Self {
+        let mut is_used = vec![false; points];
+        for v in topology.triangles().flat_map(|t| topology.corners(t)) {
+            is_used[v.index()] = true;
         }
-        for (slot, number) in new.iter_mut().filter(|n| **n != UNUSED).zip(0..) {
-            *slot = number;
+        if is_used.iter().all(|&used| used) {
+            return Self { new: None };
         }
-        Self { new }
+        let mut next = 0;
+        let number = |used| {
+            let number = next;
+            next += u32::from(used);
+            if used { number } else { UNUSED }
+        };
+        Self { new: Some(is_used.into_iter().map(number).collect()) }
     }
 
     fn number(&self, old: u32) -> u32 {
-        self.new[old as usize]
+        self.new.as_ref().map_or(old, |new| new[old as usize])
     }
 
-    fn kept<'a, T: Copy>(&'a self, items: &'a [T]) -> impl Iterator<Item = T> + 'a {
-        items.iter().zip(&self.new).filter(|&(_, &n)| n != UNUSED).map(|(&item, _)| item)
+    /// Leaves the points in use, in the user's coordinates.
+    fn keep_points(&self, points: &mut Vec<Point2>, scale: &Scale) {
+        self.keep(points);
+        for p in points {
+            *p = scale.grow(*p);
+        }
+    }
+
+    /// Leaves the spacings at points in use, in the user's unit.
+    fn keep_spacing(&self, spacing: &mut Vec<f64>, scale: &Scale) {
+        self.keep(spacing);
+        for h in spacing {
+            *h = scale.grow_length(*h);
+        }
+    }
+
+    /// Leaves the items of points in use.
+    fn keep<T>(&self, items: &mut Vec<T>) {
+        if let Some(new) = &self.new {
+            let mut numbers = new.iter();
+            items.retain(|_| numbers.next() != Some(&UNUSED));
+        }
     }
 }

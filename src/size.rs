@@ -103,6 +103,16 @@ impl SizeField {
         }
     }
 
+    /// Whether the answer depends on the hint: that of a field on the background triangles.
+    #[must_use]
+    pub fn heeds_hint(&self) -> bool {
+        match self {
+            Self::Nodal(_) | Self::Expression(_) => true,
+            Self::Composed(field) => field.base.heeds_hint() || field.regions.is_some(),
+            Self::Uniform(_) | Self::Growth(_) | Self::Direct(_) | Self::BaseLength(_) => false,
+        }
+    }
+
     /// Whether some value may be no spacing: that of a user's function.
     #[must_use]
     pub fn can_fail(&self) -> bool {

@@ -46,6 +46,9 @@ pub const TRIANGLES_MAX: usize = 1 << 29;
 
 const BORDER_BIT: u32 = 1 << 31;
 
+/// Slots that are not worth giving back on their own.
+const SHARE_MIN: usize = 1 << 12;
+
 /// What lies across a half-edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
@@ -59,7 +62,7 @@ pub enum Across {
 /// One slot: three half-edges and the flags, as eight words, so that half-edge `e` finds its origin
 /// in word `e & 3` and its twin in word `4 + (e & 3)` without a bounds check.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(16))]
 struct Slot {
     words: [u32; 8],
 }
@@ -327,6 +330,28 @@ impl Triangulation {
         debug_assert!(self.is_live(t), "removing a triangle twice");
         self.slots[t.index()].words[FLAGS] = 0;
         self.free.push(t.0);
+    }
+
+    /// The corners of the live triangles in slot order, each run through `number`.
+    ///
+    /// The slots are given back as their triangles are copied, last ones first, so that both are never
+    /// there in full: where the allocator shrinks in place, as for large arrays on Linux, no more than a
+    /// sixteenth of the slots is.
+    #[must_use]
+    pub fn into_triangles(mut self, number: impl Fn(VertexId) -> u32) -> Vec<[u32; 3]> {
+        let mut triangles = vec![[0; 3]; self.live_count()];
+        let share = (self.slots.len() / 16).max(SHARE_MIN);
+        let mut end = triangles.len();
+        while !self.slots.is_empty() {
+            let kept = self.slots.len().saturating_sub(share);
+            for slot in self.slots.drain(kept..).rev().filter(|s| s.words[FLAGS] & LIVE != 0) {
+                end -= 1;
+                let [a, b, c, ..] = slot.words;
+                triangles[end] = [a, b, c].map(|v| number(VertexId(v)));
+            }
+            self.slots.shrink_to_fit();
+        }
+        triangles
     }
 
     /// Overwrites the corners of a live triangle in place (links, flags and tag stay).

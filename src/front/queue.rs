@@ -2,7 +2,7 @@
 
 use crate::point::Point2;
 use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, VecDeque};
 
 /// Order of the base edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,10 +53,9 @@ impl Queue {
 /// Buckets of keys, a sixteenth of an octave each; keys below the current bucket join it.
 #[derive(Default)]
 pub(super) struct Buckets {
-    buckets: Vec<Vec<u32>>,
+    buckets: Vec<VecDeque<u32>>,
     floor: u64,
     current: usize,
-    head: usize,
 }
 
 /// Exponent and four bits of the mantissa: monotone in the key, exact, and the same everywhere.
@@ -68,20 +67,19 @@ impl Buckets {
     fn push(&mut self, id: u32, key: f64) {
         let index = (bucket_of(key).saturating_sub(self.floor) as usize).max(self.current);
         if index >= self.buckets.len() {
-            self.buckets.resize_with(index + 1, Vec::new);
+            self.buckets.resize_with(index + 1, VecDeque::new);
         }
-        self.buckets[index].push(id);
+        self.buckets[index].push_back(id);
     }
 
     fn pop(&mut self) -> Option<u32> {
-        while self.current < self.buckets.len() {
-            if let Some(&id) = self.buckets[self.current].get(self.head) {
-                self.head += 1;
-                return Some(id);
+        while let Some(bucket) = self.buckets.get_mut(self.current) {
+            let first = bucket.pop_front();
+            if first.is_some() {
+                return first;
             }
-            self.buckets[self.current] = Vec::new();
+            *bucket = VecDeque::new();
             self.current += 1;
-            self.head = 0;
         }
         None
     }

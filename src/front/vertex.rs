@@ -9,22 +9,16 @@ use crate::triangulation::VertexId;
 pub(super) struct Vertices<L> {
     points: Vec<Point2>,
     lifts: Vec<L>,
-    attributes: Vec<Attributes>,
-}
-
-#[derive(Clone, Copy)]
-struct Attributes {
-    spacing: f64,
-    depth: f64,
+    spacing: Vec<f64>,
+    depth: Vec<f64>,
 }
 
 impl<L: Copy> Vertices<L> {
     pub(super) fn new(points: Vec<Point2>, lifts: Vec<L>, spacing: Vec<f64>) -> Self {
         assert_eq!(points.len(), spacing.len(), "one spacing per point");
         assert_eq!(points.len(), lifts.len(), "one lift per point");
-        let attributes =
-            spacing.into_iter().map(|spacing| Attributes { spacing, depth: 0.0 }).collect();
-        Self { points, lifts, attributes }
+        let depth = vec![0.0; points.len()];
+        Self { points, lifts, spacing, depth }
     }
 
     pub(super) fn point(&self, v: VertexId) -> Point2 {
@@ -36,21 +30,22 @@ impl<L: Copy> Vertices<L> {
     }
 
     pub(super) fn spacing(&self, v: VertexId) -> f64 {
-        self.attributes[v.index()].spacing
+        self.spacing[v.index()]
     }
 
     pub(super) fn depth(&self, v: VertexId) -> f64 {
-        self.attributes[v.index()].depth
+        self.depth[v.index()]
     }
 
     pub(super) fn push(&mut self, site: Site<L>, spacing: f64, depth: f64) -> VertexId {
         self.points.push(site.at);
         self.lifts.push(site.lift);
-        self.attributes.push(Attributes { spacing, depth });
+        self.spacing.push(spacing);
+        self.depth.push(depth);
         VertexId(self.points.len() as u32 - 1)
     }
 
     pub(super) fn into_parts(self) -> (Vec<Point2>, Vec<L>, Vec<f64>) {
-        (self.points, self.lifts, self.attributes.iter().map(|a| a.spacing).collect())
+        (self.points, self.lifts, self.spacing)
     }
 }

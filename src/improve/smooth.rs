@@ -30,6 +30,8 @@ pub(super) struct Smoother {
     pub(super) outgoing: Vec<HalfEdgeId>,
     /// Vertices whose star has changed since they were last looked at.
     active: Vec<bool>,
+    /// All triangles are suspects, which need not be listed then.
+    all_suspect: bool,
     /// Triangles whose edges may be not Delaunay any more.
     suspects: Vec<TriangleId>,
     /// For each triangle whether it is a suspect.
@@ -43,11 +45,11 @@ pub(super) struct Smoother {
 }
 
 impl Smoother {
-    /// For a mesh of so many vertices, all of them active.
+    /// For a mesh of so many vertices, all of them active, and all edges suspect.
     pub(super) fn new(mesh: &Triangulation, vertices: usize) -> Self {
-        let mut smoother =
-            Self { active: vec![true; vertices], step_min: STEP_MIN, ..Self::default() };
-        smoother.suspected.resize(mesh.slot_count(), false);
+        let (active, suspected) = (vec![true; vertices], vec![false; mesh.slot_count()]);
+        let (step_min, all_suspect) = (STEP_MIN, true);
+        let mut smoother = Self { active, suspected, step_min, all_suspect, ..Self::default() };
         smoother.find_outgoing(mesh, vertices);
         smoother
     }
@@ -142,7 +144,9 @@ impl Smoother {
                 for &u in &self.link_vertices {
                     self.active[u.index()] = true;
                 }
-                self.suspect_star(sheet.mesh, start);
+                if !self.all_suspect {
+                    self.suspect_star(sheet.mesh, start);
+                }
             }
         }
         moves
@@ -150,7 +154,7 @@ impl Smoother {
 
     /// All edges of the mesh are flipped to Delaunay: for the first time, when all are suspect.
     pub(super) fn flip_all(&mut self, sheet: &mut Sheet<'_>) -> u64 {
-        self.forget_suspects();
+        self.all_suspect = false;
         let flips = flip_to_delaunay(sheet.mesh, sheet.points);
         if flips > 0 {
             self.find_outgoing(sheet.mesh, sheet.points.len());

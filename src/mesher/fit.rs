@@ -23,10 +23,15 @@ pub struct Fit {
 /// Edges measured of a large mesh.
 const EDGES_MAX: usize = 200_000;
 
+/// A hint for a field that heeds none, and where none is known.
+const ANYWHERE: Hint = Hint(TriangleId(0));
+/// No hint yet.
+const UNKNOWN: Hint = Hint(TriangleId(u32::MAX));
+
 /// Measures a mesh; `None` when it has no edge of its own.
 pub(super) fn fit(fields: &Fields, laid: &FrontMesh, fixed: usize) -> Option<Fit> {
     let mesh = &laid.mesh;
-    let hints = hints(fields, laid);
+    let hints = fields.field().heeds_hint().then(|| hints(fields, laid));
     // Edges between two given points are the domain's doing.
     let is_own = |e: &HalfEdgeId| {
         mesh.twin(*e).is_some_and(|f| *e < f)
@@ -39,7 +44,7 @@ pub(super) fn fit(fields: &Fields, laid: &FrontMesh, fixed: usize) -> Option<Fit
         .map(|e| {
             let [a, b] = [mesh.origin(e), mesh.dest(e)].map(|v| laid.points[v.index()]);
             let middle = Point2::new(0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y);
-            let mut hint = hints[e.triangle().index()];
+            let mut hint = hints.as_ref().map_or(ANYWHERE, |hints| hints[e.triangle().index()]);
             let length = a.distance(b);
             length / fields.field().at(middle, Base { length }, &mut hint)
         })
@@ -54,36 +59,39 @@ pub(super) fn fit(fields: &Fields, laid: &FrontMesh, fixed: usize) -> Option<Fit
 /// the boundary inwards, neighbour by neighbour.
 fn hints(fields: &Fields, laid: &FrontMesh) -> Vec<Hint> {
     let mesh = &laid.mesh;
-    let mut hints = vec![None; mesh.slot_count()];
+    let mut hints = vec![UNKNOWN; mesh.slot_count()];
     let mut queue = VecDeque::new();
     let sides = fields.constraint_hints();
     for e in mesh.triangles().flat_map(TriangleId::half_edges) {
         if let Across::Border(owner) = mesh.across(e)
             && let Some(hint) = fields.hint_of_edge(owner)
-            && hints[e.triangle().index()].is_none()
+            && hints[e.triangle().index()] == UNKNOWN
         {
-            hints[e.triangle().index()] = Some(hint);
+            hints[e.triangle().index()] = hint;
             queue.push_back(e.triangle());
         }
     }
     while let Some(t) = queue.pop_front() {
-        let mut hint = hints[t.index()].unwrap_or(Hint(TriangleId(0)));
+        let mut hint = hints[t.index()];
         let _ = fields.field().at(centroid(mesh, &laid.points, t), Base { length: 1.0 }, &mut hint);
-        hints[t.index()] = Some(hint);
+        hints[t.index()] = hint;
         for f in t.half_edges().into_iter().filter_map(|e| mesh.twin(e)) {
             let u = f.triangle().index();
-            if hints[u].is_none() {
+            if hints[u] == UNKNOWN {
                 // The background was cut along constraints: a walk does not cross them.
                 let beyond = mesh
                     .is_constrained(f)
                     .then(|| sides.get(&[mesh.origin(f), mesh.dest(f)]).copied())
                     .flatten();
-                hints[u] = Some(beyond.unwrap_or(hint));
+                hints[u] = beyond.unwrap_or(hint);
                 queue.push_back(f.triangle());
             }
         }
     }
-    hints.into_iter().map(|hint| hint.unwrap_or(Hint(TriangleId(0)))).collect()
+    for hint in hints.iter_mut().filter(|hint| **hint == UNKNOWN) {
+        *hint = ANYWHERE;
+    }
+    hints
 }
 
 fn centroid(mesh: &Triangulation, points: &[Point2], t: TriangleId) -> Point2 {

@@ -110,28 +110,23 @@ fn collect(
     prediction: Prediction,
     scale: &Scale,
 ) -> Meshed {
-    let Refined { points, mesh: topology, edges, spacing, stats } = refined;
-    let mut triangles: Vec<[u32; 3]> =
-        topology.triangles().map(|t| topology.corners(t).map(|v| v.0)).collect();
-    let renumber = Renumber::used(&triangles, points.len());
-    for corner in triangles.iter_mut().flatten() {
-        *corner = renumber.number(*corner);
-    }
+    let Refined { mut points, mesh: topology, edges, mut spacing, stats } = refined;
+    let renumber = Renumber::used(&topology, points.len());
     let edge = |e: crate::refine::RefinedEdge| MarkedEdge {
         vertices: e.vertices.map(|v| renumber.number(v.0)),
         marker: e.marker,
     };
-    let mesh = Mesh {
-        triangles,
-        edges: edges.into_iter().map(edge).collect(),
-        regions: region_markers(&topology, background),
-        points: renumber.kept(&points).map(|p| scale.grow(p)).collect(),
-    };
-    let spacing = match spacing.is_empty() {
+    let edges = edges.into_iter().map(edge).collect();
+    let regions = region_markers(&topology, background);
+    let triangles = topology.into_triangles(|v| renumber.number(v.0));
+    renumber.keep_points(&mut points, scale);
+    if spacing.is_empty() {
         // No field, no wish.
-        true => vec![f64::INFINITY; mesh.points.len()],
-        false => renumber.kept(&spacing).map(|h| scale.grow_length(h)).collect(),
-    };
+        spacing = vec![f64::INFINITY; points.len()];
+    } else {
+        renumber.keep_spacing(&mut spacing, scale);
+    }
+    let mesh = Mesh { points, triangles, edges, regions };
     let splits = stats.splits as usize;
     Meshed {
         mesh,
