@@ -301,8 +301,9 @@ impl<'a, C: Chart> Front<'a, C> {
                 self.legalise(id, &frame);
             }
             let base = self.edges[id as usize].half_edge;
-            for candidate in self.candidates(&frame, base, &mut hint).into_iter().flatten() {
-                let trial = self.placed(&frame, &candidate);
+            let candidates = self.candidates(&frame, base, &mut hint);
+            for candidate in candidates.as_slice() {
+                let trial = self.placed(&frame, candidate);
                 if let Some(trial) = trial.filter(|trial| self.admits(base, trial)) {
                     self.insert(id, trial, hint);
                     return;

@@ -23,6 +23,7 @@ mod fixed;
 mod ladder;
 mod perturbed;
 mod segment;
+mod spoke;
 mod wide;
 
 pub use circumcentre::{compare_circumcentre, nearer, rounded_bisector, rounded_circumcentre};
@@ -35,6 +36,7 @@ pub use segment::{
     PointInTriangle, SegmentEnd, SegmentIntersection, WhichSegment, classify, on_collinear_segment,
     point_in_triangle, point_on_segment,
 };
+pub use spoke::{Cross, Spoke, centre_in_circle};
 
 /// The sign of an exact expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -18,6 +18,7 @@
 mod append;
 pub(crate) mod arena;
 pub mod constrain;
+pub(crate) mod fan;
 pub mod locate;
 mod split;
 mod star;
@@ -83,6 +84,16 @@ const TAG_SHIFT: u32 = 4;
 pub struct Triangulation {
     slots: Vec<Slot>,
     free: Vec<u32>,
+}
+
+/// The corners after 0, 1, 2, two bits each from the lowest; and those before.
+const NEXT: u32 = 0b00_10_01;
+const PREV: u32 = 0b01_00_10;
+
+/// The corner after or before that of a half-edge: the compiler sees that it is in the same slot.
+#[inline(always)]
+const fn turned(corners: u32, e: HalfEdgeId) -> usize {
+    (corners >> (2 * (e.0 & 3)) & 3) as usize
 }
 
 impl Slot {
@@ -225,14 +236,14 @@ impl Triangulation {
     #[inline]
     #[must_use]
     pub fn dest(&self, e: HalfEdgeId) -> VertexId {
-        self.origin(e.next())
+        VertexId(self.slots[e.triangle().index()].words[turned(NEXT, e)])
     }
 
     /// The vertex of the half-edge's triangle that is not on it.
     #[inline]
     #[must_use]
     pub fn apex(&self, e: HalfEdgeId) -> VertexId {
-        self.origin(e.prev())
+        VertexId(self.slots[e.triangle().index()].words[turned(PREV, e)])
     }
 
     /// What lies across the half-edge.

@@ -54,7 +54,40 @@ impl<L> Trial<L> {
 }
 
 /// At most three candidates, best first.
-pub(super) type Candidates = [Option<Candidate>; 3];
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidates {
+    list: [Candidate; 3],
+    len: usize,
+}
+
+impl Candidates {
+    const NONE: Self = Self {
+        list: [Candidate {
+            point: Point2::new(0.0, 0.0),
+            spacing: 0.0,
+            reach: 0.0,
+            depth: 0.0,
+            score: 0.0,
+        }; 3],
+        len: 0,
+    };
+
+    /// Adds a candidate behind those that are as good.
+    #[inline]
+    fn add(&mut self, candidate: Candidate) {
+        let mut at = self.len;
+        while at > 0 && self.list[at - 1].score.total_cmp(&candidate.score).is_lt() {
+            self.list[at] = self.list[at - 1];
+            at -= 1;
+        }
+        self.list[at] = candidate;
+        self.len += 1;
+    }
+
+    pub(super) fn as_slice(&self) -> &[Candidate] {
+        &self.list[..self.len]
+    }
+}
 
 /// The base edge, its open triangle's apex, and the front edges next to it.
 #[derive(Clone, Copy, Debug)]
@@ -212,24 +245,25 @@ impl Placer<'_> {
     fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
         let n = self.n;
         let floor = self.apex_score();
+        let mut candidates = Candidates::NONE;
         if floor >= UNBEATABLE {
-            return [None; 3];
+            return candidates;
         }
         let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
-        let bisect = |corner: &Corner, at: Point2, along: Point2| {
-            (corner.is_below(COS_BISECT_MAX) && !corner.is_below(COS_BISECT_MIN))
-                .then(|| self.bisector(corner, at, along, spacing))
+        let mut add = |point: Point2| {
+            let candidate = self.trial(point, spacing);
+            // Not a number is no worse than the apex.
+            if !(NEW_POINT_WEIGHT * candidate.score <= floor) {
+                candidates.add(candidate);
+            }
         };
-        let mut trials = [Some(front), bisect(&n.left, n.a, n.b), bisect(&n.right, n.b, n.a)]
-            .map(|point| point.map(|point| self.trial(point, spacing)));
-        for trial in &mut trials {
-            if trial.is_some_and(|t| NEW_POINT_WEIGHT * t.score <= floor) {
-                *trial = None;
+        add(front);
+        for (corner, at, along) in [(&n.left, n.a, n.b), (&n.right, n.b, n.a)] {
+            if corner.is_below(COS_BISECT_MAX) && !corner.is_below(COS_BISECT_MIN) {
+                add(self.bisector(corner, at, along, spacing));
             }
         }
-        let score = |t: &Option<Candidate>| t.map_or(f64::NEG_INFINITY, |t| t.score);
-        trials.sort_by(|t, u| score(u).total_cmp(&score(t)));
-        trials
+        candidates
     }
 
     fn hard(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
@@ -238,12 +272,14 @@ impl Placer<'_> {
         let (corner, at, along) =
             if sharper_left { (&n.left, n.a, n.b) } else { (&n.right, n.b, n.a) };
         if corner.is_below(0.0) {
-            return [None; 3];
+            return Candidates::NONE;
         }
         let (front, spacing) = self.settle(HARD_STEPS, field, |p, h| p.isosceles(h));
         let point =
             if corner.is_below(-0.5) { self.bisector(corner, at, along, spacing) } else { front };
-        [Some(self.trial(point, spacing)), None, None]
+        let mut candidates = Candidates::NONE;
+        candidates.add(self.trial(point, spacing));
+        candidates
     }
 
     /// Repeats spacing and place until they agree; returns both, the spacing being the last one

@@ -5,7 +5,8 @@
 use super::candidate::Trial;
 use super::chart::Chart;
 use super::vertex::Vertices;
-use crate::predicates::{Sign, orient2d};
+use crate::predicates::{Cross, Sign, Spoke, centre_in_circle};
+use crate::triangulation::fan::PolygonSide;
 use crate::triangulation::{Across, HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// Scratch space of the cavity; reused, so that the front allocates nothing per step.
@@ -15,21 +16,38 @@ pub(super) struct Cavity {
     /// Triangles whose circumcircle contains the point, in the order they were found.
     triangles: Vec<TriangleId>,
     /// Their outline, counterclockwise, the base edge first.
-    ring: Vec<RingEdge>,
-    stack: Vec<HalfEdgeId>,
+    ring: Vec<PolygonSide>,
+    stack: Vec<Side>,
     moved: Vec<(u32, HalfEdgeId)>,
 }
 
+/// A vertex as the point sees it.
 #[derive(Clone, Copy)]
-struct RingEdge {
-    origin: VertexId,
-    dest: VertexId,
-    across: Across,
+struct Seen {
+    vertex: VertexId,
+    spoke: Spoke,
+}
+
+/// A side of a triangle in the cavity.
+#[derive(Clone, Copy)]
+struct Side {
+    half_edge: HalfEdgeId,
+    origin: Seen,
+    dest: Seen,
+    /// Of the spokes to its origin and its destination.
+    cross: Cross,
+}
+
+impl Side {
+    fn outline(&self, across: Across) -> PolygonSide {
+        PolygonSide { origin: self.origin.vertex, dest: self.dest.vertex, across }
+    }
 }
 
 /// What becomes of an edge that the search for the cavity has come to.
 enum Crossing {
-    Absorbed(HalfEdgeId),
+    /// The cavity goes on: the other two sides of the triangle behind it, in the order of the outline.
+    Absorbed([Side; 2]),
     Outline,
     Unsound,
 }
@@ -74,22 +92,60 @@ impl<'a, C: Chart> Probe<'a, C> {
         Self { chart, vertices, trial, circle, reach_sq: (REACH * trial.reach).powi(2) }
     }
 
-    /// Whether the trial lies strictly left of an edge: exact.
-    fn is_left(&self, edge: RingEdge) -> bool {
-        let [a, b] = [edge.origin, edge.dest].map(|v| self.vertices.point(v));
-        orient2d(a, b, self.trial.site.at) == Sign::Positive
+    #[inline]
+    fn see(&self, vertex: VertexId) -> Seen {
+        Seen { vertex, spoke: Spoke::new(self.trial.site.at, self.vertices.point(vertex)) }
     }
 
-    fn is_near(&self, edge: RingEdge) -> bool {
-        let [a, b] = [edge.origin, edge.dest].map(|v| self.vertices.site(v));
-        let p = self.trial.site;
-        self.chart.distance_sq(a, p) < self.reach_sq
-            || self.chart.segment_distance_sq([a, b], p) < self.reach_sq
+    #[inline]
+    fn side(half_edge: HalfEdgeId, origin: Seen, dest: Seen) -> Side {
+        Side { half_edge, origin, dest, cross: origin.spoke.cross(dest.spoke) }
     }
 
-    fn in_circle(&self, corners: [VertexId; 3]) -> bool {
-        let corners = corners.map(|v| self.vertices.point(v));
-        self.chart.in_circle(&self.circle, corners, self.trial.site.at)
+    /// Whether the trial lies strictly left of a side: exact.
+    #[inline]
+    fn is_left(&self, side: &Side) -> bool {
+        let ends = [side.origin, side.dest];
+        let points = || {
+            let [a, b] = ends.map(|end| self.vertices.point(end.vertex));
+            [a, b, self.trial.site.at]
+        };
+        side.cross.orientation(points) == Sign::Positive
+    }
+
+    #[inline]
+    fn is_near(&self, side: &Side) -> bool {
+        if C::CURVED {
+            let [a, b] = [side.origin, side.dest].map(|end| self.vertices.site(end.vertex));
+            let p = self.trial.site;
+            return self.chart.distance_sq(a, p) < self.reach_sq
+                || self.chart.segment_distance_sq([a, b], p) < self.reach_sq;
+        }
+        let [a, b] = [side.origin.spoke, side.dest.spoke];
+        if a.square < self.reach_sq || b.square < self.reach_sq {
+            return true;
+        }
+        // Between the ends the distance is the height over the side.
+        let (ux, uy) = (b.x - a.x, b.y - a.y);
+        let is_between = a.x * ux + a.y * uy < 0.0 && b.x * ux + b.y * uy > 0.0;
+        let cross_sq = side.cross.value * side.cross.value;
+        is_between && cross_sq < self.reach_sq * (ux * ux + uy * uy)
+    }
+
+    /// Whether the trial lies in the circle of the triangle that is made of three sides.
+    #[inline]
+    fn in_circle(&self, open: &Triangulation, t: TriangleId, [ab, bc, ca]: [&Side; 3]) -> bool {
+        if C::CURVED {
+            let corners = open.corners(t).map(|v| self.vertices.point(v));
+            return self.chart.in_circle(&self.circle, corners, self.trial.site.at);
+        }
+        let corners = [ab.origin, bc.origin, ca.origin];
+        let points = || {
+            let [a, b, c] = corners.map(|corner| self.vertices.point(corner.vertex));
+            [a, b, c, self.trial.site.at]
+        };
+        let crosses = [bc.cross, ca.cross, ab.cross];
+        centre_in_circle(corners.map(|corner| corner.spoke), crosses, points) == Sign::Positive
     }
 }
 
@@ -103,52 +159,69 @@ impl Cavity {
         base: HalfEdgeId,
     ) -> bool {
         self.begin();
-        if !probe.in_circle(open.corners(base.triangle())) {
+        let t = base.triangle();
+        let [a, b, c] = [open.origin(base), open.dest(base), open.apex(base)].map(|v| probe.see(v));
+        let ab = Probe::<C>::side(base, a, b);
+        let bc = Probe::<C>::side(base.next(), b, c);
+        let ca = Probe::<C>::side(base.prev(), c, a);
+        if !probe.in_circle(open, t, [&ab, &bc, &ca]) {
             return false;
         }
-        self.absorb(open, base.triangle());
-        self.stack.extend([base.prev(), base.next(), base]);
-        while let Some(e) = self.stack.pop() {
-            let edge = RingEdge {
-                origin: open.origin(e),
-                dest: open.dest(e),
-                across: if e == base { Across::Border(0) } else { open.across(e) },
-            };
-            match self.cross(open, probe, edge) {
-                Crossing::Absorbed(twin) => self.stack.extend([twin.prev(), twin.next()]),
-                Crossing::Outline => self.ring.push(edge),
+        self.absorb(open, t);
+        if !probe.is_left(&ab) {
+            return false;
+        }
+        self.ring.push(ab.outline(Across::Border(0)));
+        self.stack.extend([ca, bc]);
+        while let Some(side) = self.stack.pop() {
+            let across = open.across(side.half_edge);
+            match self.cross(open, probe, &side, across) {
+                Crossing::Absorbed([next, last]) => self.stack.extend([last, next]),
+                Crossing::Outline => self.ring.push(side.outline(across)),
                 Crossing::Unsound => return false,
             }
         }
         true
     }
 
-    /// Whether the cavity goes on across an edge: it must where `p` lies beyond the edge, and may
-    /// where the edge is near and the triangle behind it has `p` in its circumcircle.
+    /// Whether the cavity goes on across a side: it must where `p` lies beyond the side, and may
+    /// where the side is near and the triangle behind it has `p` in its circumcircle.
+    #[inline]
     fn cross<C: Chart>(
         &mut self,
         open: &mut Triangulation,
         probe: &Probe<'_, C>,
-        edge: RingEdge,
+        side: &Side,
+        across: Across,
     ) -> Crossing {
-        let Across::Twin(twin) = edge.across else {
-            return if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound };
+        let Across::Twin(twin) = across else {
+            return if probe.is_left(side) { Crossing::Outline } else { Crossing::Unsound };
         };
         // Circles on a surface are approximate: they may miss a triangle that must go.
-        let must = C::CURVED && !probe.is_left(edge);
-        let is_seen = open.mark(twin.triangle()) == self.epoch;
-        if !is_seen && !must && !probe.in_circle(open.corners(twin.triangle())) {
-            return if probe.is_left(edge) { Crossing::Outline } else { Crossing::Unsound };
+        let must = C::CURVED && !probe.is_left(side);
+        let t = twin.triangle();
+        let is_seen = open.mark(t) == self.epoch;
+        let apex = probe.see(open.apex(twin));
+        let next = Probe::<C>::side(twin.next(), side.origin, apex);
+        let last = Probe::<C>::side(twin.prev(), apex, side.dest);
+        let back = Side {
+            half_edge: twin,
+            origin: side.dest,
+            dest: side.origin,
+            cross: side.cross.reversed(),
+        };
+        if !is_seen && !must && !probe.in_circle(open, t, [&back, &next, &last]) {
+            return if probe.is_left(side) { Crossing::Outline } else { Crossing::Unsound };
         }
-        if !must && !probe.is_near(edge) && probe.is_left(edge) {
+        if !must && !probe.is_near(side) && probe.is_left(side) {
             return Crossing::Outline;
         }
         if is_seen {
             // The cavity closes around a vertex: it is no disk.
             return Crossing::Unsound;
         }
-        self.absorb(open, twin.triangle());
-        Crossing::Absorbed(twin)
+        self.absorb(open, t);
+        Crossing::Absorbed([next, last])
     }
 
     fn begin(&mut self) {
@@ -190,26 +263,15 @@ impl Cavity {
     /// Replaces the carved triangles by the fan of `p`, without the triangle on the base edge.
     pub(super) fn fill(&mut self, open: &mut Triangulation, p: VertexId) -> Fan {
         let tag = open.tag(self.triangles[0]);
-        for &t in &self.triangles {
-            open.remove(t);
-        }
-        let mut fan: Option<Fan> = None;
-        for edge in &self.ring[1..] {
-            let t = open.add([edge.origin, edge.dest, p]);
-            open.set_tag(t, tag);
-            open.relink(t.half_edge(0), edge.across);
-            if let Across::Border(owner) = edge.across {
+        let sides = &self.ring[1..];
+        open.refill(&mut self.triangles, sides.iter().copied(), p, tag);
+        for (t, side) in self.triangles.iter().zip(sides) {
+            if let Across::Border(owner) = side.across {
                 self.moved.push((owner, t.half_edge(0)));
             }
-            fan = Some(match fan {
-                None => Fan { from_a: t.half_edge(1), to_b: t.half_edge(2) },
-                Some(Fan { from_a, to_b }) => {
-                    open.link(from_a, t.half_edge(2));
-                    Fan { from_a: t.half_edge(1), to_b }
-                }
-            });
         }
-        fan.expect("an outline has at least three edges")
+        let (first, last) = (self.triangles[0], self.triangles[sides.len() - 1]);
+        Fan { from_a: last.half_edge(1), to_b: first.half_edge(2) }
     }
 
     /// The front edges whose half-edge changed in the last `fill`.

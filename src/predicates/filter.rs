@@ -18,7 +18,7 @@ use crate::point::Point2;
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// 2^-1022, beside which every underflow error is small.
-const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// Bound of the relative error of `orient2d`: 4u.
 ///
@@ -26,7 +26,7 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// two differences and the product. So the exact determinant is l - r up to 3.0000003 u (|l| + |r|).
 /// fl(l - r) has the sign of l - r and at most (1 + u) times its size, and the computed bound loses
 /// at most a factor (1 - u)^3; the remaining 0.99 u (|l| + |r|) covers both.
-const ORIENT2D_ERROR: f64 = 4.0 * UNIT_ROUNDOFF;
+pub(super) const ORIENT2D_ERROR: f64 = 4.0 * UNIT_ROUNDOFF;
 
 /// Bound of the relative error of `incircle`: 14u.
 ///
@@ -34,7 +34,7 @@ const ORIENT2D_ERROR: f64 = 4.0 * UNIT_ROUNDOFF;
 /// 4, their product 9, the sum of three of them 11. So the computed determinant is off by at most
 /// |θ_11| P, where P is the permanent in exact arithmetic, itself the computed one up to another
 /// θ_11, a second-order term. The computed bound loses at most (1 - u)^3.
-const INCIRCLE_ERROR: f64 = 14.0 * UNIT_ROUNDOFF;
+pub(super) const INCIRCLE_ERROR: f64 = 14.0 * UNIT_ROUNDOFF;
 
 /// The sign of `orient2d` if the float result exceeds its error bound.
 ///
@@ -75,7 +75,7 @@ pub(super) fn incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sig
 
 /// One branch for the bound, which is seldom missed, and none for the sign, which nobody can predict.
 #[inline(always)]
-fn decide(det: f64, bound: f64) -> Option<Sign> {
+pub(super) fn decide(det: f64, bound: f64) -> Option<Sign> {
     let sign = if det > 0.0 { Sign::Positive } else { Sign::Negative };
     (det.abs() > bound).then_some(sign)
 }

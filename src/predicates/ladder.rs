@@ -56,7 +56,7 @@ pub fn orient2d_with_rung(a: Point2, b: Point2, c: Point2) -> (Sign, Rung) {
 
 #[cold]
 #[inline(never)]
-fn orient2d_unfiltered(a: Point2, b: Point2, c: Point2) -> (Sign, Rung) {
+pub(super) fn orient2d_unfiltered(a: Point2, b: Point2, c: Point2) -> (Sign, Rung) {
     if let Some(answer) = fixed::orient2d(a, b, c) {
         answer
     } else if let Some(sign) = adaptive::orient2d(a, b, c) {

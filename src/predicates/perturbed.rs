@@ -37,7 +37,7 @@ pub fn incircle_perturbed(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
 
 #[cold]
 #[inline(never)]
-fn unfiltered(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
+pub(super) fn unfiltered(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
     match ladder::incircle_unfiltered(a, b, c, d).0 {
         Sign::Zero => tie_break([a, b, c, d]),
         sign => sign,
