@@ -17,6 +17,8 @@ pub(super) struct Cavity {
     triangles: Vec<TriangleId>,
     /// Their outline, counterclockwise, the base edge first.
     ring: Vec<PolygonSide>,
+    /// For each of its sides how the point sees where it starts.
+    spokes: Vec<Spoke>,
     stack: Vec<Side>,
     moved: Vec<(u32, HalfEdgeId)>,
 }
@@ -34,20 +36,12 @@ struct Side {
     half_edge: HalfEdgeId,
     origin: Seen,
     dest: Seen,
-    /// Of the spokes to its origin and its destination.
-    cross: Cross,
-}
-
-impl Side {
-    fn outline(&self, across: Across) -> PolygonSide {
-        PolygonSide { origin: self.origin.vertex, dest: self.dest.vertex, across }
-    }
 }
 
 /// What becomes of an edge that the search for the cavity has come to.
 enum Crossing {
-    /// The cavity goes on: the other two sides of the triangle behind it, in the order of the outline.
-    Absorbed([Side; 2]),
+    /// The cavity goes on to the triangle behind it, which has this half-edge and this apex.
+    Absorbed(HalfEdgeId, Seen),
     Outline,
     Unsound,
 }
@@ -97,56 +91,72 @@ impl<'a, C: Chart> Probe<'a, C> {
         Seen { vertex, spoke: Spoke::new(self.trial.site.at, self.vertices.point(vertex)) }
     }
 
+    /// Whether the trial lies strictly left of the line from `a` to `b`: exact.
     #[inline]
-    fn side(half_edge: HalfEdgeId, origin: Seen, dest: Seen) -> Side {
-        Side { half_edge, origin, dest, cross: origin.spoke.cross(dest.spoke) }
-    }
-
-    /// Whether the trial lies strictly left of a side: exact.
-    #[inline]
-    fn is_left(&self, side: &Side) -> bool {
-        let ends = [side.origin, side.dest];
-        let points = || {
-            let [a, b] = ends.map(|end| self.vertices.point(end.vertex));
-            [a, b, self.trial.site.at]
-        };
-        side.cross.orientation(points) == Sign::Positive
+    fn is_left(&self, a: &Seen, b: &Seen, cross: Cross) -> bool {
+        let point = |end: &Seen| self.vertices.point(end.vertex);
+        cross.orientation(|| [point(a), point(b), self.trial.site.at]) == Sign::Positive
     }
 
     #[inline]
-    fn is_near(&self, side: &Side) -> bool {
+    fn is_near(&self, a: &Seen, b: &Seen, cross: Cross) -> bool {
         if C::CURVED {
-            let [a, b] = [side.origin, side.dest].map(|end| self.vertices.site(end.vertex));
+            let [a, b] = [a, b].map(|end| self.vertices.site(end.vertex));
             let p = self.trial.site;
             return self.chart.distance_sq(a, p) < self.reach_sq
                 || self.chart.segment_distance_sq([a, b], p) < self.reach_sq;
         }
-        let [a, b] = [side.origin.spoke, side.dest.spoke];
-        if a.square < self.reach_sq || b.square < self.reach_sq {
-            return true;
-        }
-        // Between the ends the distance is the height over the side.
-        let (ux, uy) = (b.x - a.x, b.y - a.y);
-        let is_between = a.x * ux + a.y * uy < 0.0 && b.x * ux + b.y * uy > 0.0;
-        let cross_sq = side.cross.value * side.cross.value;
-        is_between && cross_sq < self.reach_sq * (ux * ux + uy * uy)
+        is_within(&a.spoke, &b.spoke, cross, self.reach_sq)
     }
 
-    /// Whether the trial lies in the circle of the triangle that is made of three sides.
+    /// Whether the trial lies in the circle of the counterclockwise triangle `t` with corners a, b, c,
+    /// given the cross products of their spokes.
     #[inline]
-    fn in_circle(&self, open: &Triangulation, t: TriangleId, [ab, bc, ca]: [&Side; 3]) -> bool {
+    fn in_circle(
+        &self,
+        open: &Triangulation,
+        t: TriangleId,
+        [a, b, c]: [&Seen; 3],
+        crosses: [Cross; 3],
+    ) -> bool {
         if C::CURVED {
             let corners = open.corners(t).map(|v| self.vertices.point(v));
             return self.chart.in_circle(&self.circle, corners, self.trial.site.at);
         }
-        let corners = [ab.origin, bc.origin, ca.origin];
-        let points = || {
-            let [a, b, c] = corners.map(|corner| self.vertices.point(corner.vertex));
-            [a, b, c, self.trial.site.at]
-        };
-        let crosses = [bc.cross, ca.cross, ab.cross];
-        centre_in_circle(corners.map(|corner| corner.spoke), crosses, points) == Sign::Positive
+        let point = |corner: &Seen| self.vertices.point(corner.vertex);
+        let points = || [point(a), point(b), point(c), self.trial.site.at];
+        centre_in_circle([a, b, c].map(|corner| &corner.spoke), crosses, points) == Sign::Positive
     }
+
+    /// Whether a segment keeps a squared distance from the trial.
+    fn is_beyond(&self, ends: [VertexId; 2], spokes: [&Spoke; 2], distance_sq: f64) -> bool {
+        if C::CURVED {
+            let ends = ends.map(|v| self.vertices.site(v));
+            return self.chart.segment_distance_sq(ends, self.trial.site) >= distance_sq;
+        }
+        !is_within(spokes[0], spokes[1], spokes[0].cross(*spokes[1]), distance_sq)
+    }
+
+    fn distance_sq(&self, v: VertexId, spoke: &Spoke) -> f64 {
+        if C::CURVED {
+            return self.chart.distance_sq(self.vertices.site(v), self.trial.site);
+        }
+        spoke.square
+    }
+}
+
+/// Whether a segment comes nearer to the centre of its ends' spokes than a squared distance; without
+/// a division.
+#[inline]
+fn is_within(a: &Spoke, b: &Spoke, cross: Cross, distance_sq: f64) -> bool {
+    if a.square < distance_sq || b.square < distance_sq {
+        return true;
+    }
+    // Between the ends the distance is the height over the segment.
+    let (ux, uy) = (b.x - a.x, b.y - a.y);
+    a.x * ux + a.y * uy < 0.0
+        && b.x * ux + b.y * uy > 0.0
+        && cross.value * cross.value < distance_sq * (ux * ux + uy * uy)
 }
 
 impl Cavity {
@@ -161,59 +171,61 @@ impl Cavity {
         self.begin();
         let t = base.triangle();
         let [a, b, c] = [open.origin(base), open.dest(base), open.apex(base)].map(|v| probe.see(v));
-        let ab = Probe::<C>::side(base, a, b);
-        let bc = Probe::<C>::side(base.next(), b, c);
-        let ca = Probe::<C>::side(base.prev(), c, a);
-        if !probe.in_circle(open, t, [&ab, &bc, &ca]) {
+        let crosses = [b.spoke.cross(c.spoke), c.spoke.cross(a.spoke), a.spoke.cross(b.spoke)];
+        if !probe.in_circle(open, t, [&a, &b, &c], crosses) || !probe.is_left(&a, &b, crosses[2]) {
             return false;
         }
         self.absorb(open, t);
-        if !probe.is_left(&ab) {
-            return false;
-        }
-        self.ring.push(ab.outline(Across::Border(0)));
-        self.stack.extend([ca, bc]);
-        while let Some(side) = self.stack.pop() {
-            let across = open.across(side.half_edge);
-            match self.cross(open, probe, &side, across) {
-                Crossing::Absorbed([next, last]) => self.stack.extend([last, next]),
-                Crossing::Outline => self.ring.push(side.outline(across)),
+        self.outline(&a, &b, Across::Border(0));
+        self.stack.push(Side { half_edge: base.prev(), origin: c, dest: a });
+        let mut side = Side { half_edge: base.next(), origin: b, dest: c };
+        loop {
+            let Side { half_edge, origin, dest } = &side;
+            let across = open.across(*half_edge);
+            match self.cross(open, probe, [origin, dest], across) {
+                Crossing::Absorbed(twin, apex) => {
+                    self.stack.push(Side { half_edge: twin.prev(), origin: apex, dest: *dest });
+                    side = Side { half_edge: twin.next(), origin: *origin, dest: apex };
+                    continue;
+                }
+                Crossing::Outline => self.outline(origin, dest, across),
                 Crossing::Unsound => return false,
             }
+            match self.stack.pop() {
+                Some(next) => side = next,
+                None => return true,
+            }
         }
-        true
     }
 
-    /// Whether the cavity goes on across a side: it must where `p` lies beyond the side, and may
-    /// where the side is near and the triangle behind it has `p` in its circumcircle.
+    /// Whether the cavity goes on across a side from `a` to `b`: it must where `p` lies beyond the side,
+    /// and may where the side is near and the triangle behind it has `p` in its circumcircle.
     #[inline]
     fn cross<C: Chart>(
         &mut self,
         open: &mut Triangulation,
         probe: &Probe<'_, C>,
-        side: &Side,
+        [a, b]: [&Seen; 2],
         across: Across,
     ) -> Crossing {
-        let Across::Twin(twin) = across else {
-            return if probe.is_left(side) { Crossing::Outline } else { Crossing::Unsound };
+        let ab = a.spoke.cross(b.spoke);
+        let as_outline = || match probe.is_left(a, b, ab) {
+            true => Crossing::Outline,
+            false => Crossing::Unsound,
         };
+        let Across::Twin(twin) = across else { return as_outline() };
         // Circles on a surface are approximate: they may miss a triangle that must go.
-        let must = C::CURVED && !probe.is_left(side);
+        let must = C::CURVED && !probe.is_left(a, b, ab);
         let t = twin.triangle();
         let is_seen = open.mark(t) == self.epoch;
         let apex = probe.see(open.apex(twin));
-        let next = Probe::<C>::side(twin.next(), side.origin, apex);
-        let last = Probe::<C>::side(twin.prev(), apex, side.dest);
-        let back = Side {
-            half_edge: twin,
-            origin: side.dest,
-            dest: side.origin,
-            cross: side.cross.reversed(),
-        };
-        if !is_seen && !must && !probe.in_circle(open, t, [&back, &next, &last]) {
-            return if probe.is_left(side) { Crossing::Outline } else { Crossing::Unsound };
+        if !is_seen && !must {
+            let crosses = [a.spoke.cross(apex.spoke), apex.spoke.cross(b.spoke), ab.reversed()];
+            if !probe.in_circle(open, t, [b, a, &apex], crosses) {
+                return as_outline();
+            }
         }
-        if !must && !probe.is_near(side) && probe.is_left(side) {
+        if !must && !probe.is_near(a, b, ab) && probe.is_left(a, b, ab) {
             return Crossing::Outline;
         }
         if is_seen {
@@ -221,7 +233,14 @@ impl Cavity {
             return Crossing::Unsound;
         }
         self.absorb(open, t);
-        Crossing::Absorbed([next, last])
+        Crossing::Absorbed(twin, apex)
+    }
+
+    /// Adds a side to the outline.
+    #[inline]
+    fn outline(&mut self, a: &Seen, b: &Seen, across: Across) {
+        self.ring.push(PolygonSide { origin: a.vertex, dest: b.vertex, across });
+        self.spokes.push(a.spoke);
     }
 
     fn begin(&mut self) {
@@ -229,6 +248,7 @@ impl Cavity {
         self.epoch += 1;
         self.triangles.clear();
         self.ring.clear();
+        self.spokes.clear();
         self.stack.clear();
         self.moved.clear();
     }
@@ -244,19 +264,20 @@ impl Cavity {
     pub(super) fn is_clear<C: Chart>(&self, probe: &Probe<'_, C>) -> bool {
         let Probe { chart, vertices, trial, .. } = *probe;
         let vertex_sq = (CLEARANCE_VERTEX * trial.reach).powi(2);
-        let edge_sq = |length_sq: f64| {
+        let edge_sq = |ends: [VertexId; 2]| {
+            let [origin, dest] = ends.map(|v| vertices.site(v));
             let h_sq = trial.reach.powi(2);
             let [low, high] = CLEARANCE_EDGE.map(|fraction| fraction * fraction * h_sq);
-            (CLEARANCE_LENGTH_SQ * length_sq).clamp(low, high)
+            (CLEARANCE_LENGTH_SQ * chart.distance_sq(origin, dest)).clamp(low, high)
         };
-        let ends = self.ring[0];
-        self.ring[1..].iter().all(|edge| {
-            let [origin, dest] = [edge.origin, edge.dest].map(|v| vertices.site(v));
-            let is_end = edge.origin == ends.origin || edge.origin == ends.dest;
-            (is_end || chart.distance_sq(origin, trial.site) >= vertex_sq)
-                && (matches!(edge.across, Across::Twin(_))
-                    || chart.segment_distance_sq([origin, dest], trial.site)
-                        >= edge_sq(chart.distance_sq(origin, dest)))
+        let base = self.ring[0];
+        let after = self.spokes[1..].iter().skip(1).chain(&self.spokes[..1]);
+        self.ring[1..].iter().zip(&self.spokes[1..]).zip(after).all(|((side, spoke), next)| {
+            let is_end = side.origin == base.origin || side.origin == base.dest;
+            let ends = [side.origin, side.dest];
+            (is_end || probe.distance_sq(side.origin, spoke) >= vertex_sq)
+                && (matches!(side.across, Across::Twin(_))
+                    || probe.is_beyond(ends, [spoke, next], edge_sq(ends)))
         })
     }
 

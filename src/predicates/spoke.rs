@@ -73,7 +73,7 @@ impl Cross {
 #[inline(always)]
 #[must_use]
 pub fn centre_in_circle(
-    [a, b, c]: [Spoke; 3],
+    [a, b, c]: [&Spoke; 3],
     [bc, ca, ab]: [Cross; 3],
     points: impl FnOnce() -> [Point2; 4],
 ) -> Sign {
@@ -100,7 +100,7 @@ mod tests {
     fn both(p: Point2, [a, b, c]: [Point2; 3]) -> [Sign; 2] {
         let [u, v, w] = [a, b, c].map(|q| Spoke::new(p, q));
         let crosses = [v.cross(w), w.cross(u), u.cross(v)];
-        let inside = centre_in_circle([u, v, w], crosses, || [a, b, c, p]);
+        let inside = centre_in_circle([&u, &v, &w], crosses, || [a, b, c, p]);
         [u.cross(v).orientation(|| [a, b, p]), inside]
     }
 
