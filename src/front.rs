@@ -366,10 +366,12 @@ impl<'a, C: Chart> Front<'a, C> {
 
     /// The trial points that score better than the open triangle's own apex, best first.
     fn candidates(&self, frame: &C::Frame, base: HalfEdgeId, hint: &mut Hint) -> Candidates {
-        let neighbours = Neighbours::around(self.chart, frame, &self.open, &self.vertices, base);
+        let Self { chart, open, vertices, options, .. } = self;
+        let neighbours = Neighbours::of(*chart, frame, open, vertices, base);
         let length = neighbours.mean_spacing();
-        candidate::trials(&neighbours, self.options.rules, self.options.clamp, |p| {
-            self.chart.spacing(frame, p, Base { length }, hint)
+        let corners = || neighbours.corners(*chart, frame, open, vertices, base);
+        candidate::trials(&neighbours, options.rules, options.clamp, corners, |p| {
+            chart.spacing(frame, p, Base { length }, hint)
         })
     }
 

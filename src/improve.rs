@@ -43,12 +43,15 @@ pub struct ImproveOptions {
     /// No more tries than this: the budget counts operations, so that the answer does not depend on
     /// a clock.
     pub tries_max: u64,
+    /// A mesh is good as a whole when the mean inverse mean ratio of its triangles is above 1 by less
+    /// than this many millionths; then changes are tried at poor triangles only. 0 for none.
+    pub enough: u32,
 }
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
     pub const NONE: Self =
-        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0 };
+        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0, enough: 0 };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
     /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
@@ -56,11 +59,24 @@ impl ImproveOptions {
     pub const fn level(level: u8) -> Self {
         match level {
             0 => Self { sweeps: 4, ..Self::NONE },
-            1 => Self { sweeps: 4, passes: 8, rings: 3, depth: 2, breadth: 6, tries_max: 32_000 },
-            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, breadth: 0, tries_max: 400_000 },
-            _ => {
-                Self { sweeps: 6, passes: 16, rings: 4, depth: 6, breadth: 0, tries_max: u64::MAX }
-            }
+            1 => Self {
+                sweeps: 4,
+                passes: 8,
+                rings: 3,
+                depth: 2,
+                breadth: 6,
+                tries_max: 32_000,
+                enough: 600,
+            },
+            2 => Self { passes: 6, rings: 4, depth: 2, tries_max: 400_000, ..Self::level(0) },
+            _ => Self {
+                sweeps: 6,
+                passes: 16,
+                rings: 4,
+                depth: 6,
+                tries_max: u64::MAX,
+                ..Self::NONE
+            },
         }
     }
 }
@@ -116,8 +132,9 @@ pub fn improve(
     let effort = Effort { rings, depth, breadth };
     let outgoing = smoother.outgoing;
     let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
+    let enough = 1e-6 * f64::from(options.enough);
     for _ in 0..options.passes {
-        if defects.pass(options.tries_max, &mut stats) == 0 {
+        if defects.pass(options.tries_max, enough, &mut stats) == 0 {
             break;
         }
     }

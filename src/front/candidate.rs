@@ -89,7 +89,7 @@ impl Candidates {
     }
 }
 
-/// The base edge, its open triangle's apex, and the front edges next to it.
+/// The base edge and its open triangle's apex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbours {
     pub(super) a: Point2,
@@ -97,6 +97,11 @@ pub(super) struct Neighbours {
     apex: Point2,
     spacing: [f64; 3],
     depth: f64,
+}
+
+/// The corners of the front at the ends of the base edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corners {
     /// Far end of the front edge that ends in `a`, and the angle there.
     left: Corner,
     /// Far end of the front edge that starts in `b`, and the angle there.
@@ -133,8 +138,9 @@ impl Corner {
 }
 
 impl Neighbours {
-    /// Looks around the base edge in the open region; costs a rotation about each end.
-    pub(super) fn around<C: Chart>(
+    /// Looks at the triangle on the base edge in the open region.
+    #[inline]
+    pub(super) fn of<C: Chart>(
         chart: &C,
         frame: &C::Frame,
         open: &Triangulation,
@@ -144,18 +150,27 @@ impl Neighbours {
         let [a, b, c] = [open.origin(base), open.dest(base), open.apex(base)];
         let point = |v: VertexId| chart.local(frame, vertices.site(v));
         let [pa, pb, apex] = [a, b, c].map(point);
+        let spacing = [a, b, c].map(|v| vertices.spacing(v));
+        let depth = 0.5 * (vertices.depth(a) + vertices.depth(b));
+        Self { a: pa, b: pb, apex, spacing, depth }
+    }
+
+    /// Looks around the ends of the base edge: costs a rotation about each.
+    pub(super) fn corners<C: Chart>(
+        &self,
+        chart: &C,
+        frame: &C::Frame,
+        open: &Triangulation,
+        vertices: &Vertices<C::Lift>,
+        base: HalfEdgeId,
+    ) -> Corners {
+        let point = |v: VertexId| chart.local(frame, vertices.site(v));
         let is_pole = |u: VertexId, v: VertexId| {
             C::CURVED && chart.distance_sq(vertices.site(u), vertices.site(v)) == 0.0
         };
-        Self {
-            a: pa,
-            b: pb,
-            apex,
-            spacing: [a, b, c].map(|v| vertices.spacing(v)),
-            depth: 0.5 * (vertices.depth(a) + vertices.depth(b)),
-            left: Corner::new(pa, pb, point(left_end(open, base, is_pole)), true),
-            right: Corner::new(pb, pa, point(right_end(open, base, is_pole)), false),
-        }
+        let left = Corner::new(self.a, self.b, point(left_end(open, base, is_pole)), true);
+        let right = Corner::new(self.b, self.a, point(right_end(open, base, is_pole)), false);
+        Corners { left, right }
     }
 
     /// Mean of the spacings at the ends of the base edge: its length, freed of the accidents of
@@ -221,17 +236,20 @@ const COS_WEDGE: f64 = -0.866_025_403_784_438_6;
 const COS_BISECT_MIN: f64 = 0.173_648_177_666_930_3;
 const COS_BISECT_MAX: f64 = -0.819_152_044_288_991_8;
 
-/// The trial points worth inserting on a base edge; `field` gives the spacing at a point.
+/// The trial points worth inserting on a base edge; `corners` looks around its ends, `field` gives
+/// the spacing at a point.
 pub(super) fn trials(
     n: &Neighbours,
     rules: Rules,
     clamp: f64,
+    corners: impl FnOnce() -> Corners,
     mut field: impl FnMut(Point2) -> f64,
 ) -> Candidates {
-    let placer = Placer { n, clamp, base: n.a.distance(n.b) };
+    let base = n.a.distance(n.b);
+    let placer = Placer { n, clamp, base, is_coarse: base > COARSE_BASE * n.mean_spacing() };
     match rules {
-        Rules::Scored => placer.scored(&mut field),
-        Rules::Hard => placer.hard(&mut field),
+        Rules::Scored => placer.scored(corners, &mut field),
+        Rules::Hard => placer.hard(&corners(), &mut field),
     }
 }
 
@@ -239,26 +257,34 @@ struct Placer<'a> {
     n: &'a Neighbours,
     clamp: f64,
     base: f64,
+    /// Whether the base edge is much longer than its spacing.
+    is_coarse: bool,
 }
 
 impl Placer<'_> {
-    fn scored(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
+    fn scored(
+        &self,
+        corners: impl FnOnce() -> Corners,
+        field: &mut impl FnMut(Point2) -> f64,
+    ) -> Candidates {
         let n = self.n;
-        let floor = self.apex_score();
         let mut candidates = Candidates::NONE;
-        if floor >= UNBEATABLE {
+        let (shape, fit) = (shape(n.a, n.b, n.apex), self.fit(n.apex, n.spacing[2]));
+        if self.is_unbeatable(shape, fit) {
             return candidates;
         }
+        let floor = shape * self.weight(fit);
+        let corners = corners();
         let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
         let mut add = |point: Point2| {
-            let candidate = self.trial(point, spacing);
+            let score = self.score(&corners, point, spacing);
             // Not a number is no worse than the apex.
-            if !(NEW_POINT_WEIGHT * candidate.score <= floor) {
-                candidates.add(candidate);
+            if !(NEW_POINT_WEIGHT * score <= floor) {
+                candidates.add(self.candidate(point, spacing, score));
             }
         };
         add(front);
-        for (corner, at, along) in [(&n.left, n.a, n.b), (&n.right, n.b, n.a)] {
+        for (corner, at, along) in [(&corners.left, n.a, n.b), (&corners.right, n.b, n.a)] {
             if corner.is_below(COS_BISECT_MAX) && !corner.is_below(COS_BISECT_MIN) {
                 add(self.bisector(corner, at, along, spacing));
             }
@@ -266,19 +292,23 @@ impl Placer<'_> {
         candidates
     }
 
-    fn hard(&self, field: &mut impl FnMut(Point2) -> f64) -> Candidates {
+    fn hard(
+        &self,
+        Corners { left, right }: &Corners,
+        field: &mut impl FnMut(Point2) -> f64,
+    ) -> Candidates {
         let n = self.n;
-        let sharper_left = n.left.convex && (!n.right.convex || n.left.cosine >= n.right.cosine);
+        let mut candidates = Candidates::NONE;
+        let sharper_left = left.convex && (!right.convex || left.cosine >= right.cosine);
         let (corner, at, along) =
-            if sharper_left { (&n.left, n.a, n.b) } else { (&n.right, n.b, n.a) };
+            if sharper_left { (left, n.a, n.b) } else { (right, n.b, n.a) };
         if corner.is_below(0.0) {
-            return Candidates::NONE;
+            return candidates;
         }
         let (front, spacing) = self.settle(HARD_STEPS, field, |p, h| p.isosceles(h));
         let point =
             if corner.is_below(-0.5) { self.bisector(corner, at, along, spacing) } else { front };
-        let mut candidates = Candidates::NONE;
-        candidates.add(self.trial(point, spacing));
+        candidates.add(self.candidate(point, spacing, 1.0));
         candidates
     }
 
@@ -294,7 +324,7 @@ impl Placer<'_> {
         // From a coarse base edge a point is further away than the spacing of its ends allows for: held
         // to that, fine spacing would spread from the ends of long edges, layer by layer, far beyond
         // what the field asks for.
-        let near = if self.is_coarse() { self.base } else { mean };
+        let near = if self.is_coarse { self.base } else { mean };
         let mut spacing = mean;
         let mut point = place(self, spacing);
         for _ in 0..steps {
@@ -311,19 +341,10 @@ impl Placer<'_> {
         (point, spacing)
     }
 
-    fn trial(&self, point: Point2, spacing: f64) -> Candidate {
+    fn candidate(&self, point: Point2, spacing: f64, score: f64) -> Candidate {
         let height = cross(self.n.a, self.n.b, point) / self.base;
-        Candidate {
-            point,
-            spacing,
-            reach: spacing.max(COARSE_REACH * self.base),
-            depth: self.n.depth + height,
-            score: self.score(point, spacing),
-        }
-    }
-
-    fn is_coarse(&self) -> bool {
-        self.base > COARSE_BASE * self.n.mean_spacing()
+        let (reach, depth) = (spacing.max(COARSE_REACH * self.base), self.n.depth + height);
+        Candidate { point, spacing, reach, depth, score }
     }
 
     /// The wanted length between vertices of these spacings, in reach of the base edge.
@@ -364,40 +385,46 @@ impl Placer<'_> {
         Point2::new(at.x + length * wx / norm, at.y + length * wy / norm)
     }
 
-    /// Score of the open triangle: its shape, and how its sides fit the wanted lengths.
-    fn apex_score(&self) -> f64 {
-        let n = self.n;
-        shape(n.a, n.b, n.apex) * self.fit(n.apex, n.spacing[2])
+    /// Whether shape times weight is at least [`UNBEATABLE`], without the roots.
+    fn is_unbeatable(&self, shape: f64, fit: f64) -> bool {
+        if self.is_coarse {
+            return shape * fit >= UNBEATABLE;
+        }
+        let least = UNBEATABLE / shape;
+        shape > 0.0 && fit >= least.powi(8)
     }
 
-    /// Score of a new point: the worst of its triangle and of those that it leaves in the corners.
-    fn score(&self, p: Point2, spacing: f64) -> f64 {
+    /// Score of a new point: the worst of its triangle and of those that it leaves in the corners, and
+    /// how its sides fit the wanted lengths.
+    fn score(&self, Corners { left, right }: &Corners, p: Point2, spacing: f64) -> f64 {
         let n = self.n;
         let mut worst = shape(n.a, n.b, p);
-        if n.left.is_below(COS_WEDGE) {
-            worst = worst.min(shape(n.a, p, n.left.far));
+        if left.is_below(COS_WEDGE) {
+            worst = worst.min(shape(n.a, p, left.far));
         }
-        if n.right.is_below(COS_WEDGE) {
-            worst = worst.min(shape(p, n.b, n.right.far));
+        if right.is_below(COS_WEDGE) {
+            worst = worst.min(shape(p, n.b, right.far));
         }
-        worst * self.fit(p, spacing)
+        worst * self.weight(self.fit(p, spacing))
     }
 
-    /// How well the two sides at `p` fit the wanted lengths: 1 when they do, towards 0. The eighth
-    /// root makes it a tie-break beside the shape: without it uniform meshes drift, with its square
-    /// root graded ones get too many vertices of degree 5 and 7 (measured on three domains). On a
-    /// coarse base edge the way to the wanted length matters as much as the shape: with a root there,
-    /// the front closes triangles as coarse as the boundary.
+    /// How well the two sides at `p` fit the wanted lengths: 1 when they do, towards 0.
     fn fit(&self, p: Point2, spacing: f64) -> f64 {
         let n = self.n;
-        let coarse = self.is_coarse();
         let side = |end: Point2, h: f64| {
-            let wanted = if coarse { self.length(h, spacing) } else { 0.5 * (h + spacing) };
+            let wanted = if self.is_coarse { self.length(h, spacing) } else { 0.5 * (h + spacing) };
             let ratio = end.distance(p) / wanted;
             ratio.min(1.0 / ratio)
         };
-        let both = side(n.a, n.spacing[0]) * side(n.b, n.spacing[1]);
-        if coarse { both } else { both.sqrt().sqrt().sqrt() }
+        side(n.a, n.spacing[0]) * side(n.b, n.spacing[1])
+    }
+
+    /// What a fit counts for. The eighth root makes it a tie-break beside the shape: without it uniform
+    /// meshes drift, with its square root graded ones get too many vertices of degree 5 and 7 (measured
+    /// on three domains). On a coarse base edge the way to the wanted length matters as much as the
+    /// shape: with a root there, the front closes triangles as coarse as the boundary.
+    fn weight(&self, fit: f64) -> f64 {
+        if self.is_coarse { fit } else { fit.sqrt().sqrt().sqrt() }
     }
 }
 

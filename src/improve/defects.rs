@@ -18,6 +18,8 @@ use rayon::prelude::*;
 const BATCH: usize = 64;
 /// Searches that share memory, one after the other.
 const SHARE: usize = 4;
+/// In a mesh that is good as a whole only triangles worse than this are worth a search.
+const POOR: f64 = 1.08;
 
 /// Searches for better topologies at the irregular vertices of a mesh.
 pub(super) struct Defects<'a> {
@@ -36,6 +38,8 @@ pub(super) struct Defects<'a> {
     changed: Vec<bool>,
     /// And in any batch.
     unsettled: Vec<bool>,
+    /// Vertices without a triangle worse than this are left alone.
+    least: f64,
 }
 
 impl<'a> Defects<'a> {
@@ -50,7 +54,19 @@ impl<'a> Defects<'a> {
         let active = vec![true; points.len()];
         let changed = vec![false; points.len()];
         let unsettled = changed.clone();
-        Self { mesh, points, spacing, fixed, quantum, effort, outgoing, active, changed, unsettled }
+        Self {
+            mesh,
+            points,
+            spacing,
+            fixed,
+            quantum,
+            effort,
+            outgoing,
+            active,
+            changed,
+            unsettled,
+            least: 1.0,
+        }
     }
 
     /// What is left to smooth: wherever something has changed.
@@ -59,10 +75,11 @@ impl<'a> Defects<'a> {
     }
 
     /// One pass over the irregular vertices and those with bad triangles, worst first; ends before
-    /// more than `budget` changes have been tried in all, and returns the number of changes kept.
-    pub(super) fn pass(&mut self, budget: u64, stats: &mut ImproveStats) -> u64 {
+    /// more than `budget` changes have been tried in all, and returns the number of changes kept. The
+    /// first pass finds out whether the mean inverse mean ratio is above 1 by less than `enough`.
+    pub(super) fn pass(&mut self, budget: u64, enough: f64, stats: &mut ImproveStats) -> u64 {
         let before = stats.changes;
-        let list = self.worst_first(stats.tried == 0);
+        let list = self.worst_first(stats.tried == 0, enough);
         for batch in list.chunks(BATCH) {
             if !self.batch(batch, budget, stats) {
                 break;
@@ -112,19 +129,25 @@ impl<'a> Defects<'a> {
     }
 
     /// Active vertices worth trying, by the worst triangle around them, then by index.
-    fn worst_first(&self, is_first: bool) -> Vec<VertexId> {
+    fn worst_first(&mut self, is_first: bool, enough: f64) -> Vec<VertexId> {
+        let first = is_first.then(|| self.view().degrees.survey());
+        if first.as_ref().is_some_and(|survey| survey.mean < 1.0 + enough) {
+            self.least = POOR;
+        }
+        let is_candidate = |v: &usize| first.as_ref().is_none_or(|survey| survey.irregular[*v]);
         let degrees = self.view().degrees;
-        let active = (self.fixed..self.points.len()).filter(|&v| self.active[v]);
-        let candidates: Vec<VertexId> = if is_first {
-            let irregular = degrees.irregular();
-            active.filter(|&v| irregular[v]).map(|v| VertexId(v as u32)).collect()
-        } else {
-            active.map(|v| VertexId(v as u32)).collect()
-        };
-        let mut found: Vec<(f64, VertexId)> = candidates
-            .into_iter()
+        let mut found: Vec<(f64, VertexId)> = (self.fixed..self.points.len())
+            .filter(|&v| self.active[v])
+            .filter(is_candidate)
+            .map(|v| VertexId(v as u32))
             .filter_map(|v| degrees.defect(v).map(|worst| (worst, v)))
+            .filter(|&(worst, _)| worst > self.least)
             .collect();
+        // The others have none until something changes around them.
+        self.active.fill(false);
+        for (_, v) in &found {
+            self.active[v.index()] = true;
+        }
         found.sort_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
         found.into_iter().map(|(_, v)| v).collect()
     }

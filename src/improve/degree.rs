@@ -20,6 +20,14 @@ pub(super) struct Degrees<'a> {
     pub(super) outgoing: &'a [HalfEdgeId],
 }
 
+/// What a mesh is like.
+pub(super) struct Survey {
+    /// For each vertex whether it may have a defect.
+    pub(super) irregular: Vec<bool>,
+    /// Mean inverse mean ratio of the triangles.
+    pub(super) mean: f64,
+}
+
 impl Degrees<'_> {
     /// The worst inverse mean ratio around a vertex where that calls for a change: where the vertex
     /// is irregular or has a bad triangle.
@@ -29,21 +37,25 @@ impl Degrees<'_> {
         (worst > BAD || self.degree(start) != Some(REGULAR)).then_some(worst)
     }
 
-    /// For each vertex whether it may have a defect: all at once, in the order of the triangles.
-    pub(super) fn irregular(&self) -> Vec<bool> {
+    /// Looks at all vertices and triangles at once, in the order of the triangles.
+    pub(super) fn survey(&self) -> Survey {
         // Six triangles, none of them bad; more than 127 are not told from each other.
         const IS_BAD: u8 = 128;
         let mut counts = vec![0_u8; self.points.len()];
+        let mut sum = 0.0;
         for t in self.mesh.triangles() {
             let corners = self.mesh.corners(t);
             let [a, b, c] = corners.map(|v| self.points[v.index()]);
-            let bad = if inverse_mean_ratio(a, b, c) > BAD { IS_BAD } else { 0 };
+            let f = inverse_mean_ratio(a, b, c);
+            sum += f;
+            let bad = if f > BAD { IS_BAD } else { 0 };
             for v in corners {
                 let count = &mut counts[v.index()];
                 *count = ((*count & !IS_BAD) + 1).min(IS_BAD - 1) | (*count & IS_BAD) | bad;
             }
         }
-        counts.into_iter().map(|count| usize::from(count) != REGULAR).collect()
+        let irregular = counts.into_iter().map(|count| usize::from(count) != REGULAR).collect();
+        Survey { irregular, mean: sum / self.mesh.live_count() as f64 }
     }
 
     /// Adds the changes worth trying around a vertex that are not in the list yet.
