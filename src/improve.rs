@@ -130,7 +130,7 @@ pub fn improve(
     }
     let ImproveOptions { rings, depth, breadth, .. } = options;
     let effort = Effort { rings, depth, breadth };
-    let outgoing = smoother.outgoing;
+    let outgoing = smoother.into_outgoing();
     let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
     let enough = 1e-6 * f64::from(options.enough);
     for _ in 0..options.passes {

@@ -82,6 +82,11 @@ impl Smoother {
         self.find_outgoing(mesh, vertices);
     }
 
+    /// A half-edge out of each vertex, and nothing else of it is kept.
+    pub(super) fn into_outgoing(self) -> Vec<HalfEdgeId> {
+        self.outgoing
+    }
+
     /// Takes over what another one knows, reusing its own memory.
     pub(super) fn assign(&mut self, other: &Self) {
         self.outgoing.clone_from(&other.outgoing);
