@@ -4,8 +4,9 @@
 //! knows no coordinates: whoever asks a geometric question passes the points in.
 //!
 //! A triangle owns one 32-byte slot; slot `t` holds the half-edges `4t`, `4t + 1`, `4t + 2`. The
-//! stride is four and not three so that the triangle of a half-edge is a shift, the slot fills half
-//! a cache line, and its spare words hold the flags.
+//! stride is four and not three so that the triangle of a half-edge is a shift, and the spare words of
+//! the slot hold its flags. Slots are aligned as any allocation is and not to half a cache line, which
+//! measures the same: so large arrays grow and shrink in place.
 //!
 //! ```text
 //!            origin(e2)
@@ -20,6 +21,7 @@ pub(crate) mod arena;
 pub mod constrain;
 pub(crate) mod fan;
 pub mod locate;
+mod plain;
 mod split;
 mod star;
 pub mod verify;
@@ -46,9 +48,6 @@ pub const GHOST: VertexId = VertexId(u32::MAX);
 pub const TRIANGLES_MAX: usize = 1 << 29;
 
 const BORDER_BIT: u32 = 1 << 31;
-
-/// Slots that are not worth giving back on their own.
-const SHARE_MIN: usize = 1 << 12;
 
 /// What lies across a half-edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -341,28 +340,6 @@ impl Triangulation {
         debug_assert!(self.is_live(t), "removing a triangle twice");
         self.slots[t.index()].words[FLAGS] = 0;
         self.free.push(t.0);
-    }
-
-    /// The corners of the live triangles in slot order, each run through `number`.
-    ///
-    /// The slots are given back as their triangles are copied, last ones first, so that both are never
-    /// there in full: where the allocator shrinks in place, as for large arrays on Linux, no more than a
-    /// sixteenth of the slots is.
-    #[must_use]
-    pub fn into_triangles(mut self, number: impl Fn(VertexId) -> u32) -> Vec<[u32; 3]> {
-        let mut triangles = vec![[0; 3]; self.live_count()];
-        let share = (self.slots.len() / 16).max(SHARE_MIN);
-        let mut end = triangles.len();
-        while !self.slots.is_empty() {
-            let kept = self.slots.len().saturating_sub(share);
-            for slot in self.slots.drain(kept..).rev().filter(|s| s.words[FLAGS] & LIVE != 0) {
-                end -= 1;
-                let [a, b, c, ..] = slot.words;
-                triangles[end] = [a, b, c].map(|v| number(VertexId(v)));
-            }
-            self.slots.shrink_to_fit();
-        }
-        triangles
     }
 
     /// Overwrites the corners of a live triangle in place (links, flags and tag stay).

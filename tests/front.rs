@@ -558,6 +558,28 @@ fn the_least_harmful_changes_find_as_much_as_all_of_them() {
     assert!(narrow < 1.1 * all, "mean - 1 is {narrow}, with all changes {all}");
 }
 
+// spec: I6
+#[test]
+fn in_a_mesh_that_is_good_as_a_whole_changes_are_tried_at_poor_triangles_only() {
+    let ring = fine_in_coarse();
+    let run = |enough| {
+        let improve = ImproveOptions { enough, ..ImproveOptions::level(1) };
+        ring.mesh(&Options { improve, ..Options::default() })
+    };
+    let [all, graded, poor] = [0, ImproveOptions::level(1).enough, 1_000_000].map(run);
+    assert_eq!(graded.improve, all.improve, "a graded mesh is not that good");
+    assert!(poor.improve.tried > 0 && poor.improve.tried < all.improve.tried / 2);
+    assert!(is_conforming(&poor.mesh));
+}
+
+// spec: I6
+#[test]
+fn higher_levels_leave_no_vertex_out() {
+    assert!(
+        (0..4).filter(|&level| level != 1).all(|level| ImproveOptions::level(level).enough == 0)
+    );
+}
+
 // spec: I21
 #[test]
 fn no_chain_is_tried_where_none_is_allowed() {

@@ -300,8 +300,7 @@ impl Placer<'_> {
         let n = self.n;
         let mut candidates = Candidates::NONE;
         let sharper_left = left.convex && (!right.convex || left.cosine >= right.cosine);
-        let (corner, at, along) =
-            if sharper_left { (left, n.a, n.b) } else { (right, n.b, n.a) };
+        let (corner, at, along) = if sharper_left { (left, n.a, n.b) } else { (right, n.b, n.a) };
         if corner.is_below(0.0) {
             return candidates;
         }

@@ -103,6 +103,18 @@ mod tests {
         field.at(Point2::new(x, y), Base { length: 1.0 }, &mut Hint(TriangleId(1)))
     }
 
+    #[test]
+    fn hints_are_heeded_where_the_answer_depends_on_the_background_triangle() {
+        let mut field = Composed::plain(SizeField::Uniform(8.0));
+        field.cap = 6.0;
+        let heeds = |field: Composed| SizeField::Composed(Box::new(field)).heeds_hint();
+        assert!(!SizeField::Uniform(1.0).heeds_hint() && !SizeField::BaseLength(1.5).heeds_hint());
+        assert!(!heeds(field));
+        let mut field = Composed::plain(SizeField::Uniform(8.0));
+        field.regions = Some(RegionCaps { regions: vec![0, 1], caps: vec![2.0, 4.0] });
+        assert!(heeds(field));
+    }
+
     // spec: H8
     #[test]
     fn the_smallest_of_all_counts() {

@@ -1,6 +1,8 @@
 //! Refilling a polygon with triangles about one vertex.
 
-use super::{Across, BORDER_BIT, HalfEdgeId, LIVE, Slot, TAG_SHIFT, TriangleId, Triangulation, VertexId};
+use super::{
+    Across, BORDER_BIT, HalfEdgeId, LIVE, Slot, TAG_SHIFT, TriangleId, Triangulation, VertexId,
+};
 
 /// A side of a polygon, with the polygon on its left.
 #[derive(Clone, Copy, Debug)]
