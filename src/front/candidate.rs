@@ -278,8 +278,9 @@ impl Placer<'_> {
         let (front, spacing) = self.settle(SCORED_STEPS, field, |p, h| p.two_lengths(h));
         let mut add = |point: Point2| {
             let score = self.score(&corners, point, spacing);
-            // Not a number is no worse than the apex.
-            if !(NEW_POINT_WEIGHT * score <= floor) {
+            // What is not a number is no worse.
+            let is_worse = NEW_POINT_WEIGHT * score <= floor;
+            if !is_worse {
                 candidates.add(self.candidate(point, spacing, score));
             }
         };
