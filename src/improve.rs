@@ -6,6 +6,7 @@
 //! Vertices of the boundary and of constraints never move.
 
 mod attempt;
+mod books;
 mod defects;
 mod degree;
 mod energy;
@@ -16,9 +17,11 @@ mod smooth;
 mod split;
 
 pub(crate) use attempt::{Attempt, Effort, GAIN_MIN, Search, Searcher};
-use defects::Defects;
+pub(crate) use books::{Books, Searched};
+use defects::{Defects, Lattice};
 pub use flip::flip_to_delaunay;
 pub(crate) use patch::{Origin, Patch, Worth};
+pub(crate) use smooth::NOWHERE;
 use smooth::{Sheet, Smoother};
 pub use split::{SplitOptions, split_long_edges};
 
@@ -114,13 +117,14 @@ pub fn improve(
     }
     let ImproveOptions { rings, depth, breadth, .. } = options;
     let effort = Effort { rings, depth, breadth };
-    let outgoing = smoother.outgoing;
-    let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
+    let lattice = Lattice { mesh, points, spacing, fixed, quantum, effort };
+    let mut defects = Defects::new(lattice, smoother.outgoing);
     for _ in 0..options.passes {
-        if defects.pass(options.tries_max, &mut stats) == 0 {
+        if defects.pass(options.tries_max) == 0 {
             break;
         }
     }
+    (stats.tried, stats.changes) = (defects.books.tried, defects.books.changes);
     if stats.changes > 0 {
         let mut smoother = defects.into_smoother();
         let mut sheet = Sheet { mesh, points, fixed, quantum };

@@ -4,118 +4,57 @@
 //! edge moves it along, removing or adding a vertex moves it across, and two that meet vanish. Such
 //! changes are searched for on patches, and kept only if the patch is better for them.
 
-use super::ImproveStats;
 use super::attempt::{Attempt, Effort, Searcher, View};
+use super::books::{Books, Searched};
 use super::degree::Degrees;
 use super::patch::{Origin, Patch};
-use super::smooth::{NOWHERE, Smoother};
+use super::smooth::Smoother;
 use crate::point::Point2;
 use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
-use rayon::prelude::*;
 
-/// Searches made on the same state of the mesh, before what they have found takes its place. Part
-/// of the result, so it does not depend on the number of threads.
-const BATCH: usize = 64;
-/// Searches that share memory, one after the other.
-const SHARE: usize = 4;
-
-/// Searches for better topologies at the irregular vertices of a mesh.
-pub(super) struct Defects<'a> {
+/// A mesh in the plane, and how it is searched.
+pub(super) struct Lattice<'a> {
     pub(super) mesh: &'a mut Triangulation,
     pub(super) points: &'a mut Vec<Point2>,
     pub(super) spacing: &'a mut Vec<f64>,
     /// Vertices below this index never move.
-    fixed: usize,
-    quantum: Option<f64>,
-    effort: Effort,
-    /// A half-edge out of each vertex that is in a triangle.
-    outgoing: Vec<HalfEdgeId>,
-    /// Vertices whose surroundings have changed since they were last tried.
-    active: Vec<bool>,
-    /// Vertices around which something has changed in this batch.
-    changed: Vec<bool>,
-    /// And in any batch.
-    unsettled: Vec<bool>,
+    pub(super) fixed: usize,
+    pub(super) quantum: Option<f64>,
+    pub(super) effort: Effort,
+}
+
+/// Searches for better topologies at the irregular vertices of a mesh.
+pub(super) struct Defects<'a> {
+    lattice: Lattice<'a>,
+    pub(super) books: Books,
 }
 
 impl<'a> Defects<'a> {
-    pub(super) fn new(
-        mesh: &'a mut Triangulation,
-        (points, spacing): (&'a mut Vec<Point2>, &'a mut Vec<f64>),
-        fixed: usize,
-        quantum: Option<f64>,
-        effort: Effort,
-        outgoing: Vec<HalfEdgeId>,
-    ) -> Self {
-        let active = vec![true; points.len()];
-        let changed = vec![false; points.len()];
-        let unsettled = changed.clone();
-        Self { mesh, points, spacing, fixed, quantum, effort, outgoing, active, changed, unsettled }
+    /// For a mesh with a half-edge out of each vertex that is in a triangle.
+    pub(super) fn new(lattice: Lattice<'a>, outgoing: Vec<HalfEdgeId>) -> Self {
+        Self { lattice, books: Books::new(outgoing) }
     }
 
     /// What is left to smooth: wherever something has changed.
     pub(super) fn into_smoother(self) -> Smoother {
-        Smoother::from_parts(self.mesh, self.outgoing, self.unsettled)
+        Smoother::from_parts(self.lattice.mesh, self.books.outgoing, self.books.unsettled)
     }
 
     /// One pass over the irregular vertices and those with bad triangles, worst first; ends before
     /// more than `budget` changes have been tried in all, and returns the number of changes kept.
-    pub(super) fn pass(&mut self, budget: u64, stats: &mut ImproveStats) -> u64 {
-        let before = stats.changes;
-        let list = self.worst_first(stats.tried == 0);
-        for batch in list.chunks(BATCH) {
-            if !self.batch(batch, budget, stats) {
-                break;
-            }
-        }
-        stats.changes - before
+    pub(super) fn pass(&mut self, budget: u64) -> u64 {
+        let before = self.books.changes;
+        let list = self.worst_first();
+        self.books.pass(&mut self.lattice, &list, |_| budget);
+        self.books.changes - before
     }
 
-    /// Searches around some vertices at once and keeps what is found, in their order; `false` when
-    /// the budget is spent.
-    fn batch(&mut self, batch: &[VertexId], budget: u64, stats: &mut ImproveStats) -> bool {
-        let batch: Vec<VertexId> =
-            batch.iter().copied().filter(|v| std::mem::take(&mut self.active[v.index()])).collect();
-        let view = self.view();
-        let search = |share: &[VertexId]| {
-            let mut searcher = Searcher::default();
-            share.iter().map(|&v| searcher.search(view, v)).collect::<Vec<Attempt>>()
-        };
-        let attempts: Vec<Vec<Attempt>> = batch.par_chunks(SHARE).map(search).collect();
-        let mut touched = Vec::new();
-        let mut is_within = true;
-        for (&v, mut attempt) in batch.iter().zip(attempts.into_iter().flatten()) {
-            if attempt.origin.vertices.iter().any(|u| self.changed[u.index()]) {
-                // What was looked at is no more: look again.
-                attempt = Searcher::default().search(self.view(), v);
-            }
-            if stats.tried + attempt.tried > budget {
-                is_within = false;
-                break;
-            }
-            stats.tried += attempt.tried;
-            if let Some(patch) = attempt.better {
-                stats.changes += 1;
-                self.keep(&patch, &mut attempt.origin);
-                touched.append(&mut attempt.origin.vertices);
-            }
-        }
-        for v in touched {
-            self.changed[v.index()] = false;
-        }
-        is_within
-    }
-
-    fn view(&self) -> View<'_> {
-        let degrees = Degrees { mesh: self.mesh, points: self.points, outgoing: &self.outgoing };
-        View { degrees, fixed: self.fixed, quantum: self.quantum, effort: self.effort }
-    }
-
-    /// Active vertices worth trying, by the worst triangle around them, then by index.
-    fn worst_first(&self, is_first: bool) -> Vec<VertexId> {
-        let degrees = self.view().degrees;
-        let active = (self.fixed..self.points.len()).filter(|&v| self.active[v]);
-        let candidates: Vec<VertexId> = if is_first {
+    /// Active vertices worth trying with the worst triangle around them, worst first, then by index.
+    fn worst_first(&self) -> Vec<(f64, VertexId)> {
+        let Books { outgoing, active, tried, .. } = &self.books;
+        let degrees = self.lattice.view(outgoing).degrees;
+        let active = (self.lattice.fixed..outgoing.len()).filter(|&v| active[v]);
+        let candidates: Vec<VertexId> = if *tried == 0 {
             let irregular = degrees.irregular();
             active.filter(|&v| irregular[v]).map(|v| VertexId(v as u32)).collect()
         } else {
@@ -126,13 +65,32 @@ impl<'a> Defects<'a> {
             .filter_map(|v| degrees.defect(v).map(|worst| (worst, v)))
             .collect();
         found.sort_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
-        found.into_iter().map(|(_, v)| v).collect()
+        found
+    }
+}
+
+impl Lattice<'_> {
+    fn view<'b>(&'b self, outgoing: &'b [HalfEdgeId]) -> View<'b> {
+        let degrees = Degrees { mesh: self.mesh, points: self.points, outgoing };
+        View { degrees, fixed: self.fixed, quantum: self.quantum, effort: self.effort }
+    }
+}
+
+impl Searched for Lattice<'_> {
+    type Better = Patch;
+
+    fn search(&self, outgoing: &[HalfEdgeId], searcher: &mut Searcher, v: VertexId) -> Attempt {
+        searcher.search(self.view(outgoing), v)
     }
 
-    fn keep(&mut self, patch: &Patch, origin: &mut Origin) {
+    fn replace(
+        &mut self,
+        patch: &Patch,
+        origin: &mut Origin,
+        touched: impl FnMut(&Triangulation, HalfEdgeId),
+    ) {
         for (&v, &p) in origin.vertices.iter().zip(&patch.points) {
             self.points[v.index()] = p;
-            self.outgoing[v.index()] = NOWHERE;
         }
         // Sums of floats depend on their order: by size is an order that all inputs share.
         let mut around: Vec<f64> =
@@ -145,19 +103,10 @@ impl<'a> Defects<'a> {
             spacing.push(mean);
             VertexId(points.len() as u32 - 1)
         };
-        let mut new = Vec::new();
-        origin.replace(self.mesh, patch, push, |mesh, e| new.push((mesh.origin(e), e)));
-        self.outgoing.resize(self.points.len(), NOWHERE);
-        self.active.resize(self.points.len(), true);
-        self.changed.resize(self.points.len(), true);
-        self.unsettled.resize(self.points.len(), true);
-        for (v, e) in new {
-            self.outgoing[v.index()] = e;
-        }
-        for v in &origin.vertices {
-            self.active[v.index()] = true;
-            self.changed[v.index()] = true;
-            self.unsettled[v.index()] = true;
-        }
+        origin.replace(self.mesh, patch, push, touched);
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.points.len()
     }
 }

@@ -6,7 +6,7 @@ use crate::point::Point2;
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// No half-edge.
-pub(super) const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
+pub(crate) const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
 
 /// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
 const STEP_MIN: f64 = 1e-3;
