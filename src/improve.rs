@@ -6,20 +6,24 @@
 //! Vertices of the boundary and of constraints never move.
 
 mod attempt;
+mod balance;
 mod books;
 mod defects;
 mod degree;
 mod energy;
 mod flip;
+mod forced;
 mod patch;
 mod places;
 mod smooth;
 mod split;
 
 pub(crate) use attempt::{Attempt, Effort, GAIN_MIN, Search, Searcher};
+use balance::balance;
 pub(crate) use books::{Books, Searched};
 use defects::{Defects, Lattice};
 pub use flip::flip_to_delaunay;
+pub use forced::{Forced, forced_aspect};
 pub(crate) use patch::{Origin, Patch, Worth};
 pub(crate) use smooth::NOWHERE;
 use smooth::{Sheet, Smoother};
@@ -46,12 +50,14 @@ pub struct ImproveOptions {
     /// No more tries than this: the budget counts operations, so that the answer does not depend on
     /// a clock.
     pub tries_max: u64,
+    /// Rounds of small moves at the end, for the worst triangles and for neighbours of like area.
+    pub balances: u32,
 }
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
     pub const NONE: Self =
-        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0 };
+        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0, balances: 0 };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
     /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
@@ -59,11 +65,17 @@ impl ImproveOptions {
     pub const fn level(level: u8) -> Self {
         match level {
             0 => Self { sweeps: 4, ..Self::NONE },
-            1 => Self { sweeps: 4, passes: 8, rings: 3, depth: 2, breadth: 6, tries_max: 32_000 },
-            2 => Self { sweeps: 4, passes: 6, rings: 4, depth: 2, breadth: 0, tries_max: 400_000 },
-            _ => {
-                Self { sweeps: 6, passes: 16, rings: 4, depth: 6, breadth: 0, tries_max: u64::MAX }
-            }
+            1 => Self {
+                sweeps: 4,
+                passes: 8,
+                rings: 3,
+                depth: 2,
+                breadth: 6,
+                tries_max: 32_000,
+                balances: 3,
+            },
+            2 => Self { passes: 6, rings: 4, breadth: 0, tries_max: 400_000, ..Self::level(1) },
+            _ => Self { sweeps: 6, passes: 16, depth: 6, tries_max: u64::MAX, ..Self::level(2) },
         }
     }
 }
@@ -112,12 +124,33 @@ pub fn improve(
     }
     stats.flips += smoother.flip_all(&mut sheet);
     settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
-    if options.passes == 0 || options.depth == 0 {
-        return stats;
+    if options.passes > 0 && options.depth > 0 {
+        let ImproveOptions { rings, depth, breadth, .. } = options;
+        let effort = Effort { rings, depth, breadth };
+        let lattice = Lattice { mesh, points, spacing, fixed, quantum, effort };
+        smoother = mend(lattice, smoother, options, &mut stats);
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        if stats.changes > 0 {
+            stats.moves += smoother.sweep(&mut sheet);
+            stats.flips += smoother.flip(&mut sheet);
+            settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
+        }
     }
-    let ImproveOptions { rings, depth, breadth, .. } = options;
-    let effort = Effort { rings, depth, breadth };
-    let lattice = Lattice { mesh, points, spacing, fixed, quantum, effort };
+    if options.balances > 0 {
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        let [moves, flips] = balance(&mut smoother, &mut sheet, options.balances);
+        (stats.moves, stats.flips) = (stats.moves + moves, stats.flips + flips);
+    }
+    stats
+}
+
+/// Searches for better topologies; returns what is left to smooth.
+fn mend(
+    lattice: Lattice<'_>,
+    smoother: Smoother,
+    options: ImproveOptions,
+    stats: &mut ImproveStats,
+) -> Smoother {
     let mut defects = Defects::new(lattice, smoother.outgoing);
     for _ in 0..options.passes {
         if defects.pass(options.tries_max) == 0 {
@@ -125,14 +158,7 @@ pub fn improve(
         }
     }
     (stats.tried, stats.changes) = (defects.books.tried, defects.books.changes);
-    if stats.changes > 0 {
-        let mut smoother = defects.into_smoother();
-        let mut sheet = Sheet { mesh, points, fixed, quantum };
-        stats.moves += smoother.sweep(&mut sheet);
-        stats.flips += smoother.flip(&mut sheet);
-        settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
-    }
-    stats
+    defects.into_smoother()
 }
 
 /// Sweeps of smoothing after the first, each followed by flips.

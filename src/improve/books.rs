@@ -1,9 +1,9 @@
 //! The books of a search for better topologies all over a mesh, in the plane or on a surface: which
 //! vertices are worth a search, what has been tried, and what has been found.
 //!
-//! Searches look at the mesh and leave it alone. Some are made on one state of it, on all threads; then
+//! Searches look at the mesh and leave it alone. A few are made on one state of it, on all threads; then
 //! what they have found is kept in their order, and a search whose patch has changed meanwhile is made
-//! again. So the result does not depend on the number of threads.
+//! again. So the result is as if they were made one after the other, for any number of threads.
 
 use super::attempt::{Attempt, Searcher};
 use super::patch::Origin;
@@ -11,11 +11,12 @@ use super::smooth::NOWHERE;
 use crate::triangulation::{HalfEdgeId, Triangulation, VertexId};
 use rayon::prelude::*;
 
-/// Searches made on the same state of the mesh, before what they have found takes its place. Part
-/// of the result, so it does not depend on the number of threads.
+/// Vertices taken off the list of active ones at once: one that becomes active while its batch is searched
+/// has its turn in the next pass. Part of the result, so it does not depend on the number of threads.
 const BATCH: usize = 64;
-/// Searches that share memory, one after the other.
-const SHARE: usize = 4;
+/// Searches of a thread on the same state of the mesh. No part of the result; the more there are, the
+/// more of them are made again.
+const SHARE: usize = 2;
 
 /// A mesh that is searched.
 pub(crate) trait Searched: Sync {
@@ -57,6 +58,8 @@ pub(crate) struct Books {
     pub(crate) tried: u64,
     /// Changes of topology that were kept.
     pub(crate) changes: u64,
+    /// Memory for searches that are made one at a time.
+    searcher: Searcher,
 }
 
 impl Books {
@@ -64,7 +67,8 @@ impl Books {
     pub(crate) fn new(outgoing: Vec<HalfEdgeId>) -> Self {
         let count = outgoing.len();
         let [active, changed, unsettled] = [true, false, false].map(|of_all| vec![of_all; count]);
-        Self { outgoing, active, changed, unsettled, tried: 0, changes: 0 }
+        let searcher = Searcher::default();
+        Self { outgoing, active, changed, unsettled, tried: 0, changes: 0, searcher }
     }
 
     /// Searches around the vertices of a list of (how bad it is there, vertex), in its order, and keeps
@@ -79,24 +83,27 @@ impl Books {
         list.chunks(BATCH).all(|batch| self.batch(mesh, batch, budget(batch[0].0)))
     }
 
-    /// Searches around some vertices at once and keeps what is found, in their order; `false` when
-    /// the budget is spent.
+    /// Searches around some vertices and keeps what is found, in their order; `false` when the budget
+    /// is spent.
     fn batch<M: Searched>(&mut self, mesh: &mut M, batch: &[(f64, VertexId)], budget: u64) -> bool {
         let active = &mut self.active;
         let take = |&(_, v): &(f64, VertexId)| std::mem::take(&mut active[v.index()]).then_some(v);
         let batch: Vec<VertexId> = batch.iter().filter_map(take).collect();
-        let (seen, outgoing) = (&*mesh, &self.outgoing);
-        let search = |share: &[VertexId]| {
-            let mut searcher = Searcher::default();
-            share.iter().map(|&v| seen.search(outgoing, &mut searcher, v)).collect::<Vec<_>>()
-        };
-        let attempts: Vec<Vec<_>> = batch.par_chunks(SHARE).map(search).collect();
+        // One thread looks at each state once.
+        let threads = rayon::current_num_threads();
+        let wave = if threads == 1 { 1 } else { SHARE * threads };
+        batch.chunks(wave).all(|wave| self.wave(mesh, wave, budget))
+    }
+
+    /// Searches around some vertices at once, and then as [`batch`](Self::batch).
+    fn wave<M: Searched>(&mut self, mesh: &mut M, wave: &[VertexId], budget: u64) -> bool {
+        let attempts = self.search(mesh, wave);
         let mut touched = Vec::new();
         let mut is_within = true;
-        for (&v, mut attempt) in batch.iter().zip(attempts.into_iter().flatten()) {
+        for (&v, mut attempt) in wave.iter().zip(attempts) {
             if attempt.origin.vertices.iter().any(|u| self.changed[u.index()]) {
                 // What was looked at is no more: look again.
-                attempt = mesh.search(&self.outgoing, &mut Searcher::default(), v);
+                attempt = mesh.search(&self.outgoing, &mut self.searcher, v);
             }
             if self.tried + attempt.tried > budget {
                 is_within = false;
@@ -113,6 +120,18 @@ impl Books {
             self.changed[v.index()] = false;
         }
         is_within
+    }
+
+    /// What comes of searches around some vertices on the present state of the mesh.
+    fn search<M: Searched>(&mut self, mesh: &M, wave: &[VertexId]) -> Vec<Attempt<M::Better>> {
+        let outgoing = &self.outgoing;
+        if let &[v] = wave {
+            return vec![mesh.search(outgoing, &mut self.searcher, v)];
+        }
+        let shares = wave.par_iter().with_max_len(1);
+        shares
+            .map_init(Searcher::default, |searcher, &v| mesh.search(outgoing, searcher, v))
+            .collect()
     }
 
     fn keep<M: Searched>(&mut self, mesh: &mut M, better: &M::Better, origin: &mut Origin) {
