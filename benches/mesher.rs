@@ -1,7 +1,7 @@
 //! The pipeline's stages beside spade where it does the same job, and the check of the result.
 //!
 //!     cargo bench --bench mesher
-//!     cargo bench --bench mesher -- quality [LEVEL]     table of quality over fourteen domains
+//!     cargo bench --bench mesher -- quality [LEVEL [GROWTH]]  quality over fourteen domains
 //!     cargo bench --bench mesher -- worst               the worst cases, each checked
 //!     cargo bench --bench mesher -- growth [SIDE]       time and memory over size, squares up to SIDE
 //!                                                       segments a side, beside spade
@@ -135,8 +135,10 @@ fn main() {
     let arguments: Vec<String> =
         std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let number = |default: u32| arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(default);
+    let growth =
+        || arguments.get(2).and_then(|g| g.parse().ok()).unwrap_or(Options::default().growth);
     match arguments.first().map(String::as_str) {
-        Some("quality") => tables::quality(number(1).min(3) as u8),
+        Some("quality") => tables::quality(number(1).min(3) as u8, growth()),
         Some("worst") => tables::worst(),
         Some("growth") => tables::growth(number(2080), spade_refinement),
         _ => {

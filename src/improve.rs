@@ -6,19 +6,26 @@
 //! Vertices of the boundary and of constraints never move.
 
 mod attempt;
+mod balance;
+mod books;
 mod defects;
 mod degree;
 mod energy;
 mod flip;
+mod forced;
 mod patch;
 mod places;
 mod smooth;
 mod split;
 
 pub(crate) use attempt::{Attempt, Effort, GAIN_MIN, Search, Searcher};
-use defects::Defects;
+use balance::balance;
+pub(crate) use books::{Books, Searched};
+use defects::{Defects, Lattice};
 pub use flip::flip_to_delaunay;
+pub use forced::{Forced, forced_aspect};
 pub(crate) use patch::{Origin, Patch, Worth};
+pub(crate) use smooth::NOWHERE;
 use smooth::{Sheet, Smoother};
 pub use split::{SplitOptions, split_long_edges};
 
@@ -46,12 +53,22 @@ pub struct ImproveOptions {
     /// A mesh is good as a whole when the mean inverse mean ratio of its triangles is above 1 by less
     /// than this many millionths; then changes are tried at poor triangles only. 0 for none.
     pub enough: u32,
+    /// Rounds of small moves at the end, for the worst triangles and for neighbours of like area.
+    pub balances: u32,
 }
 
 impl ImproveOptions {
     /// Neither smoothing nor flips nor anything else but flips to Delaunay.
-    pub const NONE: Self =
-        Self { sweeps: 0, passes: 0, rings: 0, depth: 0, breadth: 0, tries_max: 0, enough: 0 };
+    pub const NONE: Self = Self {
+        sweeps: 0,
+        passes: 0,
+        rings: 0,
+        depth: 0,
+        breadth: 0,
+        tries_max: 0,
+        enough: 0,
+        balances: 0,
+    };
 
     /// A level of effort: 0 smooths, 1 tries other topologies at the worst places, 2 everywhere and
     /// more carefully, 3 until nothing gets better. Each level costs some times the one before.
@@ -67,16 +84,17 @@ impl ImproveOptions {
                 breadth: 6,
                 tries_max: 32_000,
                 enough: 600,
+                balances: 3,
             },
-            2 => Self { passes: 6, rings: 4, depth: 2, tries_max: 400_000, ..Self::level(0) },
-            _ => Self {
-                sweeps: 6,
-                passes: 16,
+            2 => Self {
+                passes: 6,
                 rings: 4,
-                depth: 6,
-                tries_max: u64::MAX,
-                ..Self::NONE
+                breadth: 0,
+                tries_max: 400_000,
+                enough: 0,
+                ..Self::level(1)
             },
+            _ => Self { sweeps: 6, passes: 16, depth: 6, tries_max: u64::MAX, ..Self::level(2) },
         }
     }
 }
@@ -125,27 +143,42 @@ pub fn improve(
     }
     stats.flips += smoother.flip_all(&mut sheet);
     settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
-    if options.passes == 0 || options.depth == 0 {
-        return stats;
+    if options.passes > 0 && options.depth > 0 {
+        let ImproveOptions { rings, depth, breadth, .. } = options;
+        let effort = Effort { rings, depth, breadth };
+        let lattice = Lattice { mesh, points, spacing, fixed, quantum, effort };
+        smoother = mend(lattice, smoother, options, &mut stats);
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        if stats.changes > 0 {
+            stats.moves += smoother.sweep(&mut sheet);
+            stats.flips += smoother.flip(&mut sheet);
+            settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
+        }
     }
-    let ImproveOptions { rings, depth, breadth, .. } = options;
-    let effort = Effort { rings, depth, breadth };
-    let outgoing = smoother.into_outgoing();
-    let mut defects = Defects::new(mesh, (points, spacing), fixed, quantum, effort, outgoing);
+    if options.balances > 0 {
+        let mut sheet = Sheet { mesh, points, fixed, quantum };
+        let [moves, flips] = balance(&mut smoother, &mut sheet, options.balances);
+        (stats.moves, stats.flips) = (stats.moves + moves, stats.flips + flips);
+    }
+    stats
+}
+
+/// Searches for better topologies; returns what is left to smooth.
+fn mend(
+    lattice: Lattice<'_>,
+    smoother: Smoother,
+    options: ImproveOptions,
+    stats: &mut ImproveStats,
+) -> Smoother {
+    let mut defects = Defects::new(lattice, smoother.into_outgoing());
     let enough = 1e-6 * f64::from(options.enough);
     for _ in 0..options.passes {
-        if defects.pass(options.tries_max, enough, &mut stats) == 0 {
+        if defects.pass(options.tries_max, enough) == 0 {
             break;
         }
     }
-    if stats.changes > 0 {
-        let mut smoother = defects.into_smoother();
-        let mut sheet = Sheet { mesh, points, fixed, quantum };
-        stats.moves += smoother.sweep(&mut sheet);
-        stats.flips += smoother.flip(&mut sheet);
-        settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
-    }
-    stats
+    (stats.tried, stats.changes) = (defects.books.tried, defects.books.changes);
+    defects.into_smoother()
 }
 
 /// Sweeps of smoothing after the first, each followed by flips.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use trigrade::domain::validate::{Plc, PlcInside, PlcSegment};
 use trigrade::front::{FrontError, Order, Rules};
-use trigrade::improve::ImproveOptions;
+use trigrade::improve::{ImproveOptions, forced_aspect};
 use trigrade::mesh::Mesh;
 use trigrade::mesher::{Gradation, MeshError, Meshed, Method, Options, Unobserved, mesh_plc};
 use trigrade::point::Point2;
@@ -475,6 +475,64 @@ fn fans_stay_as_good_as_they_were_laid() {
             assert!((0.99 * least..=1.01 * least).contains(&worst), "{name}, {level}: {worst}");
         }
     }
+}
+
+/// A corridor wound up three times, with segments of a length at its ends twelve times as long as the
+/// one beside them.
+fn spiral() -> Sketch {
+    let arm = |k: u32, shift: f64| {
+        let turns = 3.0 * f64::from(k) / 400.0;
+        let (angle, radius) = (std::f64::consts::TAU * turns, 0.3 + 0.35 * turns + shift);
+        Point2::new(radius * libm::cos(angle), radius * libm::sin(angle))
+    };
+    let inner = (0..=400).rev().map(|k| arm(k, 0.0));
+    Sketch::default().add_loop(inner.chain((0..=400).map(|k| arm(k, 0.17))), 1)
+}
+
+/// A wheel of 24 teeth, whose flanks are over five times as long as the segments on top.
+fn gear() -> Sketch {
+    let outer = (0..192).map(|k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / 192.0;
+        let radius = if k % 8 < 4 { 1.0 } else { 0.82 };
+        Point2::new(radius * libm::cos(angle), radius * libm::sin(angle))
+    });
+    Sketch::default().add_loop(outer, 1).add_loop(circle(60, 0.0, 0.0, 0.3), 2)
+}
+
+// spec: I23 F9
+#[test]
+fn the_worst_triangle_is_what_the_boundary_forces() {
+    // No mesh that keeps the spiral's boundary has a better worst triangle by more than a hundredth. A
+    // tooth of the gear is too narrow for two fans: one vertex serves both corners on top.
+    for (name, sketch, [least, slack]) in
+        [("spiral", spiral(), [3.37, 1.015]), ("gear", gear(), [1.79, 1.09])]
+    {
+        let mesh = sketch.mesh(&Options::default()).mesh;
+        let (worst, forced) = (worst_aspect(&mesh), forced_aspect(&mesh).expect("corners").aspect);
+        assert!(forced > least, "{name}: {forced}");
+        assert!((forced..=slack * forced).contains(&worst), "{name}: {worst}, forced {forced}");
+    }
+}
+
+// spec: I24
+#[test]
+fn balance_raises_the_worst_angles_and_evens_areas() {
+    let ring = Sketch::default()
+        .add_loop(circle(120, 0.0, 0.0, 10.0), 1)
+        .add_loop(circle(100, 2.0, 1.0, 1.0), 2);
+    let [without, with] = [0, 3].map(|balances| {
+        let improve = ImproveOptions { balances, ..ImproveOptions::level(1) };
+        ring.mesh(&Options { improve, ..Options::default() }).mesh
+    });
+    let share_99 = |mesh: &Mesh| {
+        let mut all: Vec<f64> = aspects(mesh).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() * 99 / 100]
+    };
+    assert!(share_99(&with) < share_99(&without));
+    assert!(worst_aspect(&with) < worst_aspect(&without));
+    assert!(mean_aspect(&with) < mean_aspect(&without) + 1e-3);
+    assert_eq!(border(&with), border(&without));
 }
 
 /// The mesh that a pool of so many threads makes.

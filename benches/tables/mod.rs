@@ -5,7 +5,7 @@ use std::time::Instant;
 use trigrade::check::{CheckOptions, Metric, Report, check};
 use trigrade::domain::Domain;
 use trigrade::domain::validate::{Plc, validate};
-use trigrade::improve::ImproveOptions;
+use trigrade::improve::{ImproveOptions, forced_aspect};
 use trigrade::mesh::{Mesh, MeshData};
 use trigrade::mesher::{Gradation, Meshed, Observer, Options, Stage, mesh_plc};
 use trigrade::point::Point2;
@@ -33,12 +33,13 @@ struct Row {
     mean: f64,
     p99: f64,
     worst: f64,
+    forced: f64,
     angle: f64,
     area: f64,
     seconds: f64,
 }
 
-const HEAD: &str = "domain                      triangles   mean   99 %    max  angle  area99  fit 1/50/99 %      k/s";
+const HEAD: &str = "domain                      triangles   mean   99 %    max forced  angle  area99  fit 1/50/99 %      k/s";
 
 fn run(domain: &Domain, options: &Options) -> Result<(Meshed, Report, f64), String> {
     let plc = validate(domain).map_err(|faults| faults[0].to_string())?;
@@ -65,6 +66,7 @@ fn row(name: &str, domain: &Domain, options: &Options) -> Option<Row> {
         mean: shape.mean?,
         p99: shape.percentile_99?,
         worst: shape.max?,
+        forced: forced_aspect(&meshed.mesh).map_or(1.0, |forced| forced.aspect),
         angle: quality.summary(Metric::MinAngle)?.min?,
         area: quality.summary(Metric::NeighbourAreaRatio)?.percentile_99?,
         seconds,
@@ -73,10 +75,11 @@ fn row(name: &str, domain: &Domain, options: &Options) -> Option<Row> {
         .fit
         .map_or(String::new(), |fit| format!("{:.2} {:.2} {:.2}", fit.low, fit.median, fit.high));
     println!(
-        "{name:26} {triangles:10} {:6.4} {:6.3} {:6.3} {:6.1} {:7.2}  {fit:16} {:6.0}{verdict}",
+        "{name:26} {triangles:10} {:6.4} {:6.3} {:6.3} {:6.3} {:6.1} {:7.2}  {fit:16} {:6.0}{verdict}",
         row.mean,
         row.p99,
         row.worst,
+        row.forced,
         row.angle,
         row.area,
         triangles as f64 / seconds / 1e3,
@@ -96,17 +99,21 @@ Netgen                          1.085  1.40   3.42   22      2.18        24
 delaundo                        1.061  1.35   138    25      1.76       242
 Triangle -q33                   1.123  1.56   1.96   33      2.48      1400";
 
-/// Quality over the domains, default options but for the level of improvement.
-pub fn quality(level: u8) {
-    let options = Options { improve: ImproveOptions::level(level), ..Options::default() };
-    println!("level {level}\n{HEAD}");
+/// Quality over the domains, default options but for the level of improvement and the growth.
+pub fn quality(level: u8, growth: f64) {
+    let improve = ImproveOptions::level(level);
+    let options = Options { improve, growth, ..Options::default() };
+    println!("level {level}, growth {growth}\n{HEAD}");
     let rows: Vec<Row> =
         all().iter().filter_map(|Named { name, domain }| row(name, domain, &options)).collect();
     println!(
         "\nnine regular domains     mean of means, median 99 %, worst, median angle, area99, k/s"
     );
-    summary(&rows[..REGULAR.min(rows.len())]);
+    let regular = &rows[..REGULAR.min(rows.len())];
+    summary(regular);
     println!("{PEERS}");
+    let forced = regular.iter().map(|row| row.forced).fold(1.0, f64::max);
+    println!("the boundaries force {forced:.3} on any mesher that keeps them");
 }
 
 /// The peers' columns of some rows.

@@ -34,14 +34,19 @@ pub(crate) struct Effort {
 }
 
 /// What came of a search.
-#[derive(Default)]
-pub(crate) struct Attempt {
+pub(crate) struct Attempt<Better = Patch> {
     /// Changes tried.
     pub(crate) tried: u64,
     /// Where the patch came from.
     pub(crate) origin: Origin,
     /// What is to take its place, if the search was a success.
-    pub(crate) better: Option<Patch>,
+    pub(crate) better: Option<Better>,
+}
+
+impl<Better> Default for Attempt<Better> {
+    fn default() -> Self {
+        Self { tried: 0, origin: Origin::default(), better: None }
+    }
 }
 
 /// The topology that is searched, and how.

@@ -22,7 +22,7 @@ pub(super) fn inverse_mean_ratio(a: Point2, b: Point2, c: Point2) -> f64 {
 }
 
 /// Triangles with a larger inverse mean ratio are measured by R/(2r), too.
-const POOR: f64 = 1.3;
+pub(super) const POOR: f64 = 1.3;
 
 /// R/(2r) of a triangle whose inverse mean ratio f calls for it; 1 for others.
 pub(super) fn aspect_of_poor(f: f64, [a, b, c]: [Point2; 3]) -> f64 {
@@ -162,7 +162,7 @@ pub(super) fn better_place(
 }
 
 /// Whether all triangles of the star are strictly counterclockwise, exactly.
-fn is_valid(v: Point2, link: &[Point2]) -> bool {
+pub(super) fn is_valid(v: Point2, link: &[Point2]) -> bool {
     let mut u = link[link.len() - 1];
     v.is_finite()
         && link.iter().all(|&w| {

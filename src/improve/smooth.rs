@@ -6,7 +6,7 @@ use crate::point::Point2;
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 
 /// No half-edge.
-pub(super) const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
+pub(crate) const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
 
 /// Steps shorter than this fraction of the distance to the first neighbour are not worth a move.
 const STEP_MIN: f64 = 1e-3;
@@ -155,6 +155,32 @@ impl Smoother {
             }
         }
         moves
+    }
+
+    /// Looks again at the corners of some triangles, and at nothing else.
+    pub(super) fn wake_where(&mut self, sheet: &Sheet<'_>, wakes: impl Fn([Point2; 3]) -> bool) {
+        self.active.fill(false);
+        for t in sheet.mesh.triangles() {
+            let corners = sheet.mesh.corners(t);
+            if wakes(corners.map(|v| sheet.points[v.index()])) {
+                corners.into_iter().for_each(|v| self.active[v.index()] = true);
+            }
+        }
+    }
+
+    /// A half-edge out of a vertex that is in a triangle and active, which it is no more.
+    pub(super) fn take_active(&mut self, v: usize) -> Option<HalfEdgeId> {
+        let is_active = std::mem::take(&mut self.active[v]);
+        Some(self.outgoing[v]).filter(|&start| is_active && start != NOWHERE)
+    }
+
+    /// Looks again at the origin of a half-edge, the vertices around it and the edges of its star.
+    pub(super) fn wake_star(&mut self, mesh: &Triangulation, start: HalfEdgeId) {
+        self.active[mesh.origin(start).index()] = true;
+        for e in mesh.star(start) {
+            self.active[mesh.dest(e).index()] = true;
+        }
+        self.suspect_star(mesh, start);
     }
 
     /// All edges of the mesh are flipped to Delaunay: for the first time, when all are suspect.

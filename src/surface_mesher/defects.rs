@@ -5,26 +5,18 @@ use super::chart::{Frame, Lift, SurfaceChart};
 use super::flip::shape;
 use crate::front::chart::Site;
 use crate::improve::{
-    Attempt, Effort, GAIN_MIN, ImproveOptions, Origin, Patch, Search, Searcher, Worth,
+    Attempt, Books, Effort, GAIN_MIN, ImproveOptions, NOWHERE, Origin, Patch, Search, Searched,
+    Searcher, Worth,
 };
 use crate::point::Point2;
 use crate::predicates::{Sign, orient2d};
 use crate::triangulation::{HalfEdgeId, TriangleId, Triangulation, VertexId};
 use crate::vector::distance;
-use rayon::prelude::*;
 
-/// No half-edge.
-const NOWHERE: HalfEdgeId = HalfEdgeId(u32::MAX);
 /// What a vertex has.
 const REGULAR: u32 = 6;
 /// A regular vertex with a triangle worse than this (inverse mean ratio) is tried too.
 const BAD: f64 = 1.1;
-/// Searches made on the same state of the mesh. Part of the result, so it does not depend on the
-/// number of threads.
-const BATCH: usize = 64;
-/// Searches that share memory, one after the other.
-const SHARE: usize = 4;
-
 /// A mesh in (u, v) with what lies above it.
 pub(super) struct Cloth<'a> {
     pub(super) mesh: &'a mut Triangulation,
@@ -38,26 +30,20 @@ pub(super) struct Defects<'a> {
     /// Vertices below this index never move.
     fixed: usize,
     effort: Effort,
-    /// A half-edge out of each vertex that is in a triangle.
-    outgoing: Vec<HalfEdgeId>,
-    /// Vertices whose surroundings have changed since they were last tried.
-    active: Vec<bool>,
-    /// Vertices around which something has changed in this batch.
-    changed: Vec<bool>,
-    /// And in any batch.
-    pub(super) unsettled: Vec<bool>,
-    tried: u64,
     /// No more changes are tried than these: with and without bad triangles around.
     budgets: [u64; 2],
-    /// Changes of topology that were kept.
-    pub(super) changes: u64,
+    pub(super) books: Books,
 }
 
-/// What came of a search: the patch in the plane and its vertices on the surface.
-struct Found {
-    tried: u64,
-    origin: Origin,
-    better: Option<(Patch, Vec<Site<Lift>>)>,
+/// A patch in the plane and its vertices on the surface.
+type Raised = (Patch, Vec<Site<Lift>>);
+
+/// A mesh, and how it is searched.
+struct Spread<'a, 'b> {
+    chart: &'a SurfaceChart<'a>,
+    fixed: usize,
+    effort: Effort,
+    cloth: &'a mut Cloth<'b>,
 }
 
 /// The mesh as it is looked at.
@@ -76,8 +62,7 @@ impl<'a> Defects<'a> {
         fixed: usize,
         options: ImproveOptions,
     ) -> Self {
-        let count = cloth.points.len();
-        let mut outgoing = vec![NOWHERE; count];
+        let mut outgoing = vec![NOWHERE; cloth.points.len()];
         for e in cloth.mesh.triangles().flat_map(TriangleId::half_edges) {
             outgoing[cloth.mesh.origin(e).index()] = e;
         }
@@ -85,29 +70,21 @@ impl<'a> Defects<'a> {
             chart,
             fixed,
             effort: Effort { rings: options.rings, depth: options.depth, breadth: options.breadth },
-            outgoing,
-            active: vec![true; count],
-            changed: vec![false; count],
-            unsettled: vec![false; count],
-            tried: 0,
             budgets: budgets(cloth.mesh.live_count() as u64, options.tries_max),
-            changes: 0,
+            books: Books::new(outgoing),
         }
     }
 
     /// One pass over the irregular vertices and those with bad triangles, worst first; whether another
     /// one may find more: the budgets are not spent, and something has changed.
     pub(super) fn pass(&mut self, cloth: &mut Cloth<'_>) -> bool {
-        let before = self.changes;
-        for batch in self.worst_first(cloth).chunks(BATCH) {
-            let is_bad = batch[0].0 > BAD;
-            let budget = self.budgets[usize::from(is_bad)];
-            let batch: Vec<VertexId> = batch.iter().map(|entry| entry.1).collect();
-            if !self.batch(cloth, &batch, budget) {
-                return false;
-            }
-        }
-        self.changes > before
+        let before = self.books.changes;
+        let list = self.worst_first(cloth);
+        let Self { chart, fixed, effort, budgets, .. } = *self;
+        let mut spread = Spread { chart, fixed, effort, cloth };
+        let is_within =
+            self.books.pass(&mut spread, &list, |worst| budgets[usize::from(worst > BAD)]);
+        is_within && self.books.changes > before
     }
 
     /// Active vertices worth trying with the worst triangle around them, worst first, then by index.
@@ -123,95 +100,52 @@ impl<'a> Defects<'a> {
         let defect = |v: usize| {
             let (degree, worst) = around[v];
             let is_one = degree > 0 && (degree != REGULAR || worst > BAD);
-            (self.active[v] && is_one).then_some((worst, VertexId(v as u32)))
+            (self.books.active[v] && is_one).then_some((worst, VertexId(v as u32)))
         };
         let mut found: Vec<_> = (self.fixed..cloth.points.len()).filter_map(defect).collect();
         found.sort_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
         found
     }
+}
 
-    /// Searches around some vertices at once and keeps what is found, in their order; `false` when
-    /// the budget is spent.
-    fn batch(&mut self, cloth: &mut Cloth<'_>, batch: &[VertexId], budget: u64) -> bool {
-        let batch: Vec<VertexId> =
-            batch.iter().copied().filter(|v| std::mem::take(&mut self.active[v.index()])).collect();
-        let view = self.view(cloth);
-        let search = |share: &[VertexId]| {
-            let mut searcher = Searcher::default();
-            share.iter().map(|&v| view.look(&mut searcher, v)).collect::<Vec<Found>>()
-        };
-        let all: Vec<Vec<Found>> = batch.par_chunks(SHARE).map(search).collect();
-        let mut touched = Vec::new();
-        let mut is_within = true;
-        for (&v, mut found) in batch.iter().zip(all.into_iter().flatten()) {
-            if found.origin.vertices.iter().any(|u| self.changed[u.index()]) {
-                // What was looked at is no more: look again.
-                found = self.view(cloth).look(&mut Searcher::default(), v);
-            }
-            if self.tried + found.tried > budget {
-                is_within = false;
-                break;
-            }
-            self.tried += found.tried;
-            if let Some((patch, sites)) = found.better {
-                self.changes += 1;
-                self.keep(cloth, &patch, &sites, &mut found.origin);
-                touched.append(&mut found.origin.vertices);
-            }
-        }
-        for v in touched {
-            self.changed[v.index()] = false;
-        }
-        is_within
+impl Searched for Spread<'_, '_> {
+    type Better = Raised;
+
+    fn search(
+        &self,
+        outgoing: &[HalfEdgeId],
+        searcher: &mut Searcher,
+        v: VertexId,
+    ) -> Attempt<Raised> {
+        let Cloth { mesh, points, lifts } = &*self.cloth;
+        let (fixed, effort) = (self.fixed, self.effort);
+        let search = Search { mesh, outgoing, fixed, quantum: None, effort };
+        View { chart: self.chart, search, points, lifts }.look(searcher, v)
     }
 
-    fn view<'b>(&'b self, cloth: &'b Cloth<'_>) -> View<'b> {
-        let search = Search {
-            mesh: &*cloth.mesh,
-            outgoing: &self.outgoing,
-            fixed: self.fixed,
-            quantum: None,
-            effort: self.effort,
-        };
-        View { chart: self.chart, search, points: &*cloth.points, lifts: &*cloth.lifts }
-    }
-
-    fn keep(
+    fn replace(
         &mut self,
-        cloth: &mut Cloth<'_>,
-        patch: &Patch,
-        sites: &[Site<Lift>],
+        (patch, sites): &Raised,
         origin: &mut Origin,
+        touched: impl FnMut(&Triangulation, HalfEdgeId),
     ) {
-        let old = origin.vertices.len();
-        for (&v, site) in origin.vertices.iter().zip(sites) {
-            cloth.points[v.index()] = site.at;
-            cloth.lifts[v.index()] = site.lift;
-            self.outgoing[v.index()] = NOWHERE;
+        let Cloth { mesh, points, lifts } = &mut *self.cloth;
+        let mut rest = sites.iter();
+        for (&v, site) in origin.vertices.iter().zip(rest.by_ref()) {
+            points[v.index()] = site.at;
+            lifts[v.index()] = site.lift;
         }
-        let (points, lifts) = (&mut *cloth.points, &mut *cloth.lifts);
-        let mut rest = sites[old..].iter();
         let push = |_: Point2| {
             let site = rest.next().expect("a place for each vertex of the patch");
             points.push(site.at);
             lifts.push(site.lift);
             VertexId(points.len() as u32 - 1)
         };
-        let mut new = Vec::new();
-        origin.replace(cloth.mesh, patch, push, |mesh, e| new.push((mesh.origin(e), e)));
-        let count = cloth.points.len();
-        self.outgoing.resize(count, NOWHERE);
-        for list in [&mut self.active, &mut self.changed, &mut self.unsettled] {
-            list.resize(count, true);
-        }
-        for (v, e) in new {
-            self.outgoing[v.index()] = e;
-        }
-        for v in &origin.vertices {
-            self.active[v.index()] = true;
-            self.changed[v.index()] = true;
-            self.unsettled[v.index()] = true;
-        }
+        origin.replace(mesh, patch, push, touched);
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.cloth.points.len()
     }
 }
 
@@ -227,16 +161,15 @@ fn budgets(triangles: u64, most: u64) -> [u64; 2] {
 
 impl View<'_> {
     /// Searches around a vertex; a success in the plane counts if it is one on the surface.
-    fn look(&self, searcher: &mut Searcher, v: VertexId) -> Found {
-        let nothing = Found { tried: 0, origin: Origin::default(), better: None };
-        let Some(frame) = self.frame(v) else { return nothing };
+    fn look(&self, searcher: &mut Searcher, v: VertexId) -> Attempt<Raised> {
+        let Some(frame) = self.frame(v) else { return Attempt::default() };
         let place = |w: VertexId| frame.local_of(self.lifts[w.index()].point);
         let Attempt { tried, origin, better } = searcher.search_at(self.search, v, place);
         let raised = better.and_then(|patch| {
             let sites = self.raise(&frame, &patch, &origin)?;
             Some((patch, sites))
         });
-        Found { tried, origin, better: raised }
+        Attempt { tried, origin, better: raised }
     }
 
     /// The plane that touches the surface at a vertex.

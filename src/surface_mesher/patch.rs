@@ -137,10 +137,10 @@ fn improve(
             break;
         }
     }
-    if defects.changes == 0 {
+    if defects.books.changes == 0 {
         return done;
     }
-    star.wake(&cloth, |v| defects.unsettled[v]);
+    star.wake(&cloth, |v| defects.books.unsettled[v]);
     let more = star.settle(&mut cloth, options.sweeps);
     [done[0] + more[0], done[1] + more[1]]
 }
