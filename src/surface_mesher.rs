@@ -14,6 +14,8 @@ mod chart;
 mod cusp;
 mod defects;
 mod direct;
+mod distances;
+mod doubles;
 mod even;
 mod excess;
 mod flip;
@@ -334,6 +336,7 @@ fn mesh_once(
         plan.halve(&mut patches, &rims);
         excess = plan.excess(&patches, &rims);
     }
+    plan.part_doubles(&mut patches, &rims);
     for (i, patch) in patches.into_iter().enumerate() {
         let piece = &plan.outline.pieces[i];
         meshed.front.accepted_existing += patch.stats.accepted_existing;
@@ -513,6 +516,13 @@ impl Plan {
         observer.stage(Stage::Collect);
         (meshed.mesh, meshed.parameters) = weld.finish(model, &self.outline, rims);
         Ok(meshed)
+    }
+
+    /// Parts edges of patches that are the same edge in space.
+    fn part_doubles(&self, patches: &mut [PatchMesh], rims: &[Rim]) {
+        patches.par_iter_mut().enumerate().for_each(|(i, patch)| {
+            doubles::part(&self.chart(i), patch, &rims[i]);
+        });
     }
 
     /// Where the patches leave their surfaces too far.

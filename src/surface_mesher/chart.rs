@@ -5,6 +5,7 @@
 
 use super::growth::SpaceField;
 use super::sizing::Curvature;
+use super::distances::Distances;
 use crate::front::chart::{Chart, Site};
 use crate::metric::FirstForm;
 use crate::point::Point2;
@@ -164,7 +165,33 @@ impl SurfaceChart<'_> {
         (missed_sq <= NEWTON_FAILED_SQ * frame.length_sq)
             .then(|| Site { at, lift: lift(&tangents) })
     }
+
+    /// The place as far from the ends of the base edge as the one with these coordinates.
+    fn place_by_distances(&self, frame: &Frame, local: Point2) -> Option<Site<Lift>> {
+        let length = frame.length_sq.sqrt();
+        let ends = [frame.origin, along(frame.origin, length, frame.x)];
+        let wanted = [
+            local.distance(Point2::new(0.0, 0.0)),
+            local.distance(Point2::new(length, 0.0)),
+        ];
+        let Sheet { low, high, .. } = self.sheet;
+        let turn = Point2::new(TURN * (high.x - low.x), TURN * (high.y - low.y));
+        let window = [
+            Point2::new(low.x.max(frame.middle.x - turn.x), low.y.max(frame.middle.y - turn.y)),
+            Point2::new(high.x.min(frame.middle.x + turn.x), high.y.min(frame.middle.y + turn.y)),
+        ];
+        let start = frame.guess(Point2::new(local.x, START * local.y));
+        let at = Distances { ends, wanted, window }.place(&self.sheet, start);
+        let site = Site { at, lift: self.sheet.lift(at) };
+        (!site.lift.is_pole()).then_some(site)
+    }
 }
+
+/// A place by distances is at most this part of the parameters away from the middle of the edge: around
+/// a tip there are at least three.
+const TURN: f64 = 1.0 / 3.0;
+/// The search for it starts at this part of its height.
+const START: f64 = 0.25;
 
 /// Flat coordinates near a base edge: its origin is 0, the edge runs along x, and the plane is
 /// tangent to the surface near the middle of the edge.
@@ -259,7 +286,8 @@ impl Chart for SurfaceChart<'_> {
     }
 
     fn place(&self, frame: &Frame, local: Point2) -> Option<Site<Lift>> {
-        self.place_from(frame, local, frame.guess(local))
+        let found = self.place_from(frame, local, frame.guess(local));
+        found.or_else(|| self.place_by_distances(frame, local))
     }
 
     fn spacing(&self, frame: &Frame, local: Point2, _: Base, _: &mut Hint) -> f64 {

@@ -17,6 +17,9 @@ const FARTHER: f64 = 1.25;
 /// No ring is nearer to the pole than this fraction of the spacing.
 const NEAREST: f64 = 0.5;
 
+/// Parts that a patch is cut into across, to find where it is a narrow tube.
+const HOOPS: u32 = 64;
+
 /// How much farther from the pole the ring is in its middle than on the seam.
 const BULGE: f64 = 0.1;
 
@@ -26,16 +29,42 @@ pub(super) struct TipFan {
     pub(super) corners: [u32; 3],
 }
 
-/// Spacings around tips: a fifth of the way around.
+/// Spacings around tips and narrow tubes: a fifth of the way around.
 pub(super) fn sources(outline: &Outline, spacing: f64) -> Vec<Source> {
     let whole = outline.pieces.iter().filter(|piece| !piece.has_outline);
-    whole.flat_map(|piece| Side::ALL.map(|side| rings(piece, side, spacing))).flatten().collect()
+    let mut sources = Vec::new();
+    for piece in whole {
+        sources.extend(Side::ALL.map(|side| rings(piece, side, spacing)).into_iter().flatten());
+        sources.extend([Side::South, Side::West].map(|side| hoops(piece, side, spacing)).into_iter().flatten());
+    }
+    sources
+}
+
+/// Whether the sides next to this one are the two sides of a seam.
+fn closes_along(piece: &Piece, side: Side) -> bool {
+    let beside = [1, 3].map(|k| &piece.sides[(side as usize + k) % 4]);
+    matches!(beside.map(Vec::as_slice), [[a], [b]] if a.curve == b.curve)
+}
+
+/// Spacings of a patch that closes around and has no pole at either end, where fewer than five edges of
+/// the spacing go around.
+fn hoops(piece: &Piece, side: Side, spacing: f64) -> Vec<Source> {
+    let ends = [side, Side::ALL[(side as usize + 2) % 4]];
+    if !closes_along(piece, side) || ends.iter().any(|&end| piece.sides[end as usize].is_empty()) {
+        return Vec::new();
+    }
+    let hoop = |k: u32| ring(|t| across(piece, side, f64::from(k) / f64::from(HOOPS), t));
+    let wanted = |hoop: &[Vector]| length(hoop) / FAN as f64;
+    let narrow = (0..=HOOPS).map(hoop).filter(|hoop| wanted(hoop) < spacing);
+    let sources = |hoop: Vec<Vector>| {
+        let spacing = wanted(&hoop);
+        hoop.into_iter().map(move |at| Source { at, spacing })
+    };
+    narrow.flat_map(sources).collect()
 }
 
 fn rings(piece: &Piece, side: Side, spacing: f64) -> Vec<Source> {
-    let beside = [1, 3].map(|k| &piece.sides[(side as usize + k) % 4]);
-    let is_seam = matches!(beside.map(Vec::as_slice), [[a], [b]] if a.curve == b.curve);
-    if !piece.sides[side as usize].is_empty() || !is_seam {
+    if !piece.sides[side as usize].is_empty() || !closes_along(piece, side) {
         return Vec::new();
     }
     let mut sources = Vec::new();
