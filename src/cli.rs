@@ -47,7 +47,10 @@ use std::process::ExitCode;
 #[must_use]
 pub fn main() -> ExitCode {
     // Usage errors and help end here, with clap's exit codes: 2 and 0.
-    let arguments = Arguments::parse();
+    let mut arguments = Arguments::parse();
+    if arguments.global.verbose > 0 {
+        print_timings(&mut arguments.verb);
+    }
     let exit = run(&arguments).unwrap_or_else(|failure| {
         Console::new(&arguments.global, true).complain(&failure);
         failure.exit
@@ -98,6 +101,18 @@ fn run_verb(verb: &Verb, console: &Console, cleanup: &Cleanup) -> Result<Outcome
         Verb::Man => print_manual(console)?,
     }
     Ok(Outcome { exit: EXIT_HOLDS, text: String::new(), json: Value::Null, checked: None })
+}
+
+/// What `--verbose` means for verbs that can print the time of each stage.
+fn print_timings(verb: &mut Verb) {
+    match verb {
+        Verb::Mesh(mesh) => mesh.timings = true,
+        Verb::Check(check) => check.timings = true,
+        Verb::Remesh(remesh) => remesh.timings = true,
+        Verb::Delaunay(delaunay) => delaunay.timings = true,
+        Verb::Voronoi(voronoi) => voronoi.timings = true,
+        _ => {}
+    }
 }
 
 /// Whether a verb ends in a verdict on a mesh, which reports of every form can tell.

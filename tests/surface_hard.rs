@@ -161,12 +161,17 @@ fn a_leaf_between_two_trimming_curves_is_meshed_to_its_tips() {
     }
 }
 
+/// A surface of revolution about the z axis whose profile goes through points (radius, height).
+fn turned(profile: &[[f64; 2]]) -> Surface {
+    let profile = profile.iter().map(|&[r, z]| [r, 0.0, z]).collect();
+    let profile = Curve::polyline(profile).expect("a profile");
+    let turned = Revolution::new(profile, [0.0; 3], [0.0, 0.0, 1.0], [0.0, 360.0]);
+    Surface::Revolution(turned.expect("a surface"))
+}
+
 /// A cone of this slope about the z axis, with its tip at height 1.
 fn cone(slope: f64) -> Surface {
-    let profile = vec![[0.0, 0.0, 1.0], [slope, 0.0, 0.0]];
-    let profile = Curve::polyline(profile).expect("a line");
-    let cone = Revolution::new(profile, [0.0; 3], [0.0, 0.0, 1.0], [0.0, 360.0]);
-    Surface::Revolution(cone.expect("a cone"))
+    turned(&[[0.0, 1.0], [slope, 0.0]])
 }
 
 // spec: S35
@@ -180,6 +185,31 @@ fn the_tip_of_a_cone_is_a_fan_of_five() {
         let fan = mesh.triangles.iter().filter(|t| t.contains(&tip)).count();
         assert!(fan == 5 || slope > 0.9, "{fan} at slope {slope}");
         assert!(worst_ratio(&mesh) < 1.6, "{}", worst_ratio(&mesh));
+    }
+}
+
+// spec: S35 S38
+#[test]
+fn tips_however_sharp_have_right_meshes() {
+    for radius in [1.0, 0.4, 0.1, 0.02] {
+        for spacing in [0.4, 0.1, 0.05] {
+            let cone = model(turned(&[[0.0, 0.0], [radius, 1.0]]), spacing);
+            let mesh = run(&cone).expect("a mesh");
+            assert_eq!(findings(&cone, &mesh), [], "{radius} {spacing}");
+        }
+        let spindle = model(turned(&[[0.0, 0.0], [radius, 1.0], [0.0, 2.0]]), 0.2);
+        assert_eq!(findings(&spindle, &run(&spindle).expect("a mesh")), [], "{radius}");
+    }
+}
+
+// spec: S38
+#[test]
+fn tubes_narrower_than_the_spacing_are_graded_to_it() {
+    for (radius, spacing) in [(0.02, 0.4), (0.02, 0.05), (0.005, 0.1), (0.1, 0.3)] {
+        let tube = model(turned(&[[radius, 0.0], [radius, 1.0]]), spacing);
+        let mesh = run(&tube).expect("a mesh");
+        assert_eq!(findings(&tube, &mesh), [], "{radius} {spacing}");
+        assert!(worst_ratio(&mesh) < 1.5, "{radius} {spacing}: {}", worst_ratio(&mesh));
     }
 }
 

@@ -60,7 +60,7 @@ pub struct Global {
     /// Worker threads; the answer is the same for any number.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Print more: stages, times, where numbers come from.
+    /// Print more: the time of each stage, what was left out.
     #[arg(long, short, global = true, action = ArgAction::Count)]
     pub verbose: u8,
 }

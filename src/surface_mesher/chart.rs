@@ -3,9 +3,9 @@
 //! Parameters are scaled by a power of two in each direction, so that a unit of either is about a
 //! unit of length: an exact change of coordinates, so what is valid in one is valid in the other.
 
+use super::distances::Distances;
 use super::growth::SpaceField;
 use super::sizing::Curvature;
-use super::distances::Distances;
 use crate::front::chart::{Chart, Site};
 use crate::metric::FirstForm;
 use crate::point::Point2;
@@ -170,10 +170,8 @@ impl SurfaceChart<'_> {
     fn place_by_distances(&self, frame: &Frame, local: Point2) -> Option<Site<Lift>> {
         let length = frame.length_sq.sqrt();
         let ends = [frame.origin, along(frame.origin, length, frame.x)];
-        let wanted = [
-            local.distance(Point2::new(0.0, 0.0)),
-            local.distance(Point2::new(length, 0.0)),
-        ];
+        let wanted =
+            [local.distance(Point2::new(0.0, 0.0)), local.distance(Point2::new(length, 0.0))];
         let Sheet { low, high, .. } = self.sheet;
         let turn = Point2::new(TURN * (high.x - low.x), TURN * (high.y - low.y));
         let window = [

@@ -38,7 +38,8 @@ impl Distances {
             if misses.iter().zip(self.wanted).all(|(miss, wanted)| miss.abs() <= ENOUGH * wanted) {
                 break;
             }
-            let step = self.step(&FirstForm::new(&tangents), self.slopes(&tangents), misses, damping);
+            let step =
+                self.step(&FirstForm::new(&tangents), self.slopes(&tangents), misses, damping);
             let next = self.clamped(Point2::new(at.x + step[0], at.y + step[1]));
             if next == at {
                 break;

@@ -60,12 +60,10 @@ fn doubles(mesh: &Triangulation, numbers: &[u32]) -> Vec<([VertexId; 2], HalfEdg
         Some(&number) => (0, number),
         None => (1, v.0),
     };
-    let on_rim = |e: HalfEdgeId| {
-        [mesh.origin(e), mesh.dest(e)].iter().any(|v| v.index() < numbers.len())
-    };
-    let is_pole = |e: HalfEdgeId| {
-        mesh.twin(e).is_none() && name(mesh.origin(e)) == name(mesh.dest(e))
-    };
+    let on_rim =
+        |e: HalfEdgeId| [mesh.origin(e), mesh.dest(e)].iter().any(|v| v.index() < numbers.len());
+    let is_pole =
+        |e: HalfEdgeId| mesh.twin(e).is_none() && name(mesh.origin(e)) == name(mesh.dest(e));
     // The triangle on a pole is an edge in space: two sides of it are one.
     let beside_pole = |e: HalfEdgeId| is_pole(e.prev());
     let mut all = Vec::new();

@@ -14,11 +14,13 @@ const AROUND: u32 = 24;
 /// Rings that bound the spacing; each is so much farther from the pole than the one before.
 const RINGS: i32 = 60;
 const FARTHER: f64 = 1.25;
-/// No ring is nearer to the pole than this fraction of the spacing.
+/// No ring is nearer to the pole than this fraction of the spacing, times the slope of the tip.
 const NEAREST: f64 = 0.5;
 
 /// Parts that a patch is cut into across, to find where it is a narrow tube.
-const HOOPS: u32 = 64;
+const HOOPS: u32 = 256;
+/// Edges around a narrow tube: with fewer, what the front sees as flat is not.
+const AROUND_TUBE: f64 = 8.0;
 
 /// How much farther from the pole the ring is in its middle than on the seam.
 const BULGE: f64 = 0.1;
@@ -35,7 +37,9 @@ pub(super) fn sources(outline: &Outline, spacing: f64) -> Vec<Source> {
     let mut sources = Vec::new();
     for piece in whole {
         sources.extend(Side::ALL.map(|side| rings(piece, side, spacing)).into_iter().flatten());
-        sources.extend([Side::South, Side::West].map(|side| hoops(piece, side, spacing)).into_iter().flatten());
+        sources.extend(
+            [Side::South, Side::West].map(|side| hoops(piece, side, spacing)).into_iter().flatten(),
+        );
     }
     sources
 }
@@ -54,7 +58,7 @@ fn hoops(piece: &Piece, side: Side, spacing: f64) -> Vec<Source> {
         return Vec::new();
     }
     let hoop = |k: u32| ring(|t| across(piece, side, f64::from(k) / f64::from(HOOPS), t));
-    let wanted = |hoop: &[Vector]| length(hoop) / FAN as f64;
+    let wanted = |hoop: &[Vector]| length(hoop) / AROUND_TUBE;
     let narrow = (0..=HOOPS).map(hoop).filter(|hoop| wanted(hoop) < spacing);
     let sources = |hoop: Vec<Vector>| {
         let spacing = wanted(&hoop);
@@ -73,7 +77,7 @@ fn rings(piece: &Piece, side: Side, spacing: f64) -> Vec<Source> {
         let ring = ring(|t| across(piece, side, libm::pow(FARTHER, f64::from(k - RINGS)), t));
         let (far, around) = (distance(ring[0], tip), length(&ring));
         let wanted = around / FAN as f64;
-        if is_narrow(around, far) && far >= NEAREST * spacing && wanted < spacing {
+        if is_narrow(around, far) && far >= NEAREST * spacing * (wanted / far) && wanted < spacing {
             sources.extend(ring.into_iter().map(|at| Source { at, spacing: wanted }));
         }
     }
