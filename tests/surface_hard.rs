@@ -234,6 +234,33 @@ fn net(rows: u32) -> Vec<Vec<Vector>> {
         .collect()
 }
 
+/// A surface of six rows of seven waves, whose first row is one point.
+fn choppy(seed: u32) -> Surface {
+    let mut state = seed;
+    let mut noise = || {
+        state = state.wrapping_mul(1_103_515_245).wrapping_add(12_345) % (1 << 31);
+        f64::from(state) / f64::from(1_u32 << 31) * 2.0 - 1.0
+    };
+    let mut row = |i: u32| -> Vec<Vector> {
+        (0..7).map(|j| [0.4 * f64::from(i), 0.33 * f64::from(j), 1.2 * noise()]).collect()
+    };
+    let mut net: Vec<Vec<Vector>> = (0..6).map(&mut row).collect();
+    net[0] = vec![net[0][0]; 7];
+    let knots = [clamped_knots(3, 6), clamped_knots(1, 7)];
+    Surface::Tensor(Tensor::new([3, 1], knots, &net, &[]).expect("a surface"))
+}
+
+// spec: S8 S28
+#[test]
+fn vertices_on_a_choppy_surface_are_found_on_it() {
+    for seed in [0, 6, 7, 9, 16, 20] {
+        let mut choppy = model(choppy(seed * 7919 + 12_345), 0.2);
+        choppy.chord_error = Some(0.003);
+        let mesh = run(&choppy).expect("a mesh");
+        assert_eq!(findings(&choppy, &mesh), [], "{seed}");
+    }
+}
+
 // spec: S28
 #[test]
 fn knots_of_full_multiplicity_are_creases_and_one_more_is_refused() {

@@ -26,6 +26,10 @@ const SEEDS: usize = 3;
 const SEEDS_OF_VERTEX: usize = 60;
 /// Of those, one in this many steps of the lattice in either direction.
 const PART: f64 = 5.5;
+/// As many for a vertex that those do not show to lie on the surface either, and how many vertices of a
+/// run may be searched for so in vain: a mesh that is off the surface is so in most of its vertices.
+const SEEDS_OF_LOST: usize = 400;
+const LOST: u32 = 8;
 /// A vertex on the surface may be off by this fraction of the model's size: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Triangles in a run.
@@ -178,6 +182,13 @@ impl Sheets {
         best
     }
 
+    /// The nearest point of the surface from many lattice points, neighbours among them, up to the first
+    /// that is near enough: for vertices on surfaces with more waves than the lattice has points.
+    fn foot_of_many(&self, tree: &Tree<Seed>, p: Vector, enough: f64) -> Option<Foot> {
+        let seeds = tree.nearest(p, SEEDS_OF_LOST).into_iter();
+        seeds.map(|(_, seed)| self.foot_from(seed, p)).find(|foot| foot.distance <= enough)
+    }
+
     /// Whether two places are the same part of the same piece, whose foot either of them finds.
     fn are_near(&self, a: &Seed, b: &Seed) -> bool {
         let domain = self.domains[a.piece];
@@ -234,6 +245,8 @@ struct Walk<'a> {
     feet: Vec<(u32, Corner)>,
     /// Distances of the middles of edges, at the slots of their ends.
     middles: Vec<([u32; 2], Option<i32>, f64)>,
+    /// Vertices whose foot has been searched for from many places in vain.
+    lost: u32,
 }
 
 /// Places to look for the foot of a mean of N points from: one if all are on the same piece.
@@ -254,7 +267,7 @@ impl<'a> Walk<'a> {
         let nowhere = Seed { piece: 0, at: [0.0; 2] };
         let none = Corner { seed: nowhere, distance: f64::INFINITY, dual: [[0.0; 3]; 2] };
         let feet = vec![(u32::MAX, none); SLOTS];
-        Self { sheets, mesh, feet, middles: vec![([u32::MAX; 2], None, 0.0); SLOTS] }
+        Self { sheets, mesh, feet, middles: vec![([u32::MAX; 2], None, 0.0); SLOTS], lost: 0 }
     }
 
     fn measure(&mut self, t: usize) -> Option<Measured> {
@@ -313,7 +326,12 @@ impl<'a> Walk<'a> {
                 let search = |seeds| self.sheets.foot(against.tree, at[i], seeds);
                 let few = || Some(search(SEEDS)).filter(is_on);
                 let foot = found.filter(is_on).or_else(few);
-                let foot = foot.unwrap_or_else(|| nearer(found, search(SEEDS_OF_VERTEX)));
+                let mut foot = foot.unwrap_or_else(|| nearer(found, search(SEEDS_OF_VERTEX)));
+                if !is_on(&foot) && self.lost < LOST {
+                    let on = self.sheets.foot_of_many(against.tree, at[i], rounding);
+                    self.lost += u32::from(on.is_none());
+                    foot = on.unwrap_or(foot);
+                }
                 let corner = Corner::new(&foot);
                 self.feet[vertices[i] as usize % SLOTS] = (vertices[i], corner);
                 corner
