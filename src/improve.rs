@@ -51,7 +51,8 @@ pub struct ImproveOptions {
     /// a clock.
     pub tries_max: u64,
     /// A mesh is good as a whole when the mean inverse mean ratio of its triangles is above 1 by less
-    /// than this many millionths; then changes are tried at poor triangles only. 0 for none.
+    /// than this many millionths; then changes are tried at poor triangles only, and nothing is
+    /// balanced. 0 for none.
     pub enough: u32,
     /// Rounds of small moves at the end, for the worst triangles and for neighbours of like area.
     pub balances: u32,
@@ -143,11 +144,12 @@ pub fn improve(
     }
     stats.flips += smoother.flip_all(&mut sheet);
     settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
+    let mut is_good = false;
     if options.passes > 0 && options.depth > 0 {
         let ImproveOptions { rings, depth, breadth, .. } = options;
         let effort = Effort { rings, depth, breadth };
         let lattice = Lattice { mesh, points, spacing, fixed, quantum, effort };
-        smoother = mend(lattice, smoother, options, &mut stats);
+        (smoother, is_good) = mend(lattice, smoother, options, &mut stats);
         let mut sheet = Sheet { mesh, points, fixed, quantum };
         if stats.changes > 0 {
             stats.moves += smoother.sweep(&mut sheet);
@@ -155,7 +157,7 @@ pub fn improve(
             settle(&mut smoother, &mut sheet, options.sweeps, &mut stats);
         }
     }
-    if options.balances > 0 {
+    if options.balances > 0 && !is_good {
         let mut sheet = Sheet { mesh, points, fixed, quantum };
         let [moves, flips] = balance(&mut smoother, &mut sheet, options.balances);
         (stats.moves, stats.flips) = (stats.moves + moves, stats.flips + flips);
@@ -163,13 +165,14 @@ pub fn improve(
     stats
 }
 
-/// Searches for better topologies; returns what is left to smooth.
+/// Searches for better topologies; returns what is left to smooth, and whether the mesh was good as a
+/// whole before.
 fn mend(
     lattice: Lattice<'_>,
     smoother: Smoother,
     options: ImproveOptions,
     stats: &mut ImproveStats,
-) -> Smoother {
+) -> (Smoother, bool) {
     let mut defects = Defects::new(lattice, smoother.into_outgoing());
     let enough = 1e-6 * f64::from(options.enough);
     for _ in 0..options.passes {
@@ -178,7 +181,8 @@ fn mend(
         }
     }
     (stats.tried, stats.changes) = (defects.books.tried, defects.books.changes);
-    defects.into_smoother()
+    let is_good = defects.is_good();
+    (defects.into_smoother(), is_good)
 }
 
 /// Sweeps of smoothing after the first, each followed by flips.

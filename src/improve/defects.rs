@@ -40,6 +40,11 @@ impl<'a> Defects<'a> {
         Self { lattice, books: Books::new(outgoing), least: 1.0 }
     }
 
+    /// Whether the first pass has found the mesh good as a whole.
+    pub(super) fn is_good(&self) -> bool {
+        self.least == POOR
+    }
+
     /// What is left to smooth: wherever something has changed.
     pub(super) fn into_smoother(self) -> Smoother {
         Smoother::from_parts(self.lattice.mesh, self.books.outgoing, self.books.unsettled)
